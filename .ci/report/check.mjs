@@ -1,15 +1,22 @@
-// Opens the reports of runs in headless Chromium and checks what a reader would see: no error, no request to anywhere, the
-// block where trajectory.csv says, the numbers of summary.json, no text over another, no sideways scrolling.
+// Opens the pages of runs and studies in headless Chromium and checks what a reader would see: no error, no request to anywhere, the
+// blocks where trajectory.csv says and inside the picture, what was recorded in a plot, the verdict and the numbers of summary.json, no
+// text over another, no sideways scrolling; and what one would meet who uses the keyboard, or hears the page.
 //
 //   node check.mjs CHROMIUM RUN_DIR...
 
-import { readFileSync } from "node:fs";
+import { existsSync, readFileSync, statSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
+import { keyboardWalk, playByKeys, plotsWithoutWords, violations } from "./accessible.mjs";
+import { outOfPicture, unplotted, wrongVerdicts } from "./motion.mjs";
+import { overlaps } from "./overlaps.mjs";
 
-const [executablePath, ...runs] = process.argv.slice(2);
-const widths = [1280, 390];
+const [executablePath, ...folders] = process.argv.slice(2);
+/** Widths of the window, px, each in one of the two colour schemes. */
+const windows = [[1280, "light"], [390, "dark"]];
+/** Largest pages, bytes: of few bodies, and of any run. */
+const largest = { few: 1.2e6, any: 5e6 };
 const problems = [];
 
 /** The rows of a CSV file, as objects of numbers where they are numbers. */
@@ -21,32 +28,58 @@ function table(file) {
 /** `a.b.c` of an object. */
 const at = (object, path) => path.split(".").reduce((value, key) => value?.[key], object);
 
-/** Texts that lie over each other, within each picture and over the whole page. Runs in the page. */
-function overlaps() {
-  const found = [];
-  const visible = (element) => element.getClientRects().length > 0 && getComputedStyle(element).visibility !== "hidden";
-  const boxesOf = (elements) => elements.filter(visible).filter((e) => e.textContent.trim()).map((e) => {
-    const { left, right, top, bottom } = e.getBoundingClientRect();
-    return { text: e.textContent.trim().slice(0, 40), left, right, top, bottom };
-  });
-  const compare = (boxes, where) => {
-    for (let i = 0; i < boxes.length; i++) {
-      for (let j = i + 1; j < boxes.length; j++) {
-        const [a, b] = [boxes[i], boxes[j]];
-        const wide = Math.min(a.right, b.right) - Math.max(a.left, b.left);
-        const high = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
-        // A text's box is higher than its letters.
-        if (wide > 1 && high > 3) found.push(`${where}: «${a.text}» and «${b.text}»`);
+/** What holds of every page. */
+async function anyPage(page, problem) {
+  (await violations(page)).forEach((text) => problem(`axe: ${text}`));
+  (await keyboardWalk(page)).forEach(problem);
+  (await plotsWithoutWords(page)).forEach(problem);
+  (await page.evaluate(overlaps)).forEach((text) => problem(`texts overlap in ${text}`));
+  const sideways = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
+  if (sideways > 0) problem(`scrolls sideways by ${sideways} px`);
+}
+
+/** The page of a run beside its tables. */
+async function ofRun(page, run, problem, isFirst) {
+  const summary = JSON.parse(readFileSync(join(run, "summary.json"), "utf8"));
+  const trajectory = table(join(run, "trajectory.csv"));
+  const frames = Number(await page.getAttribute("#time-slider", "max")) + 1;
+  for (const fraction of [0, 0.21, 0.5, 0.83, 1]) {
+    await page.$eval("#time-slider", (slider, index) => {
+      slider.value = index;
+      slider.dispatchEvent(new Event("input"));
+    }, Math.round(fraction * (frames - 1)));
+    const t = Number(await page.getAttribute("#time-readout", "data-t"));
+    const row = trajectory.find((one) => Math.abs(one.t - t) < 1e-9);
+    if (!row) continue; // rows of the table may be further apart than frames
+    for (const body of await page.$$eval("[data-body][data-x]", (all) => all.map(({ dataset }) => ({ ...dataset })))) {
+      for (const key of ["x", "y", "phi"]) {
+        const [shown, wanted] = [Number(body[key]), row[`${body.body}.${key}`]];
+        // The page holds some seven digits.
+        if (!(Math.abs(shown - wanted) <= 1e-6 * Math.max(1, Math.abs(wanted)))) {
+          problem(`at t = ${t} ${body.body}.${key} is ${shown}, not ${wanted}`);
+        }
       }
     }
-  };
-  for (const svg of document.querySelectorAll("svg")) {
-    compare(boxesOf([...svg.querySelectorAll("text")]), svg.id || svg.getAttribute("aria-label") || "picture");
   }
-  const leaves = [...document.querySelectorAll("h1, h2, h3, dt, dd, button, label, summary, figcaption > span, p, td, th")]
-    .filter((e) => !e.querySelector("p, dt, dd, td, th, button, label"));
-  compare(boxesOf(leaves), "page");
-  return found;
+  const numbers = await page.$$eval("[data-summary]", (all) => all.map(({ dataset }) => [dataset.summary, dataset.value]));
+  if (numbers.length === 0) problem("shows no number of the summary");
+  for (const [path, value] of numbers) {
+    const wanted = at(summary, path);
+    if (String(value) !== String(wanted) && Number(value) !== Number(wanted)) {
+      problem(`${path} is ${value}, not ${wanted}`);
+    }
+  }
+  // In the first window at every time there is, in the others at fewer, to save time: their pictures differ in scale only.
+  (await page.evaluate(outOfPicture, isFirst ? 1 : 20)).forEach(problem);
+  (await playByKeys(page)).forEach(problem);
+  if (!isFirst) return;
+  // What doesn't depend on the window.
+  const data = JSON.parse(await page.$eval("#data", (element) => element.textContent));
+  wrongVerdicts(summary, trajectory, data).forEach(problem);
+  (await unplotted(page, trajectory)).forEach(problem);
+  const [size, bodies] = [statSync(join(run, "report.html")).size, data.scenery.blocks.length + data.scenery.beams.length];
+  const limit = bodies <= 10 && summary.steps <= 2e5 ? largest.few : largest.any;
+  if (size > limit) problem(`has ${size} bytes, more than ${limit}`);
 }
 
 const browser = await chromium.launch({
@@ -55,48 +88,22 @@ const browser = await chromium.launch({
     "--disable-component-update", "--disable-sync"],
 });
 try {
-  for (const run of runs) {
-    const summary = JSON.parse(readFileSync(join(run, "summary.json"), "utf8"));
-    const trajectory = table(join(run, "trajectory.csv"));
-    for (const width of widths) {
-      const problem = (text) => problems.push(`${run} at ${width} px: ${text}`);
-      const page = await browser.newPage({ viewport: { width, height: 900 } });
+  for (const folder of folders) {
+    const file = ["report.html", "tradeoff.html"].find((name) => existsSync(join(folder, name)));
+    if (!file) {
+      problems.push(`${folder} has no page`);
+      continue;
+    }
+    for (const [width, colorScheme] of windows) {
+      const problem = (text) => problems.push(`${join(folder, file)} at ${width} px, ${colorScheme}: ${text}`);
+      const page = await browser.newPage({ viewport: { width, height: 900 }, colorScheme });
       page.on("console", (message) => message.type() === "error" && problem(`console: ${message.text()}`));
       page.on("pageerror", (error) => problem(`script: ${error.message}`));
       page.on("request", (request) => request.url().startsWith("file:") || problem(`asks for ${request.url()}`));
-      await page.goto(pathToFileURL(resolve(run, "report.html")).href);
-
-      const frames = Number(await page.getAttribute("#time-slider", "max")) + 1;
-      for (const fraction of [0, 0.21, 0.5, 0.83, 1]) {
-        await page.$eval("#time-slider", (slider, index) => {
-          slider.value = index;
-          slider.dispatchEvent(new Event("input"));
-        }, Math.round(fraction * (frames - 1)));
-        const t = Number(await page.getAttribute("#time-readout", "data-t"));
-        const row = trajectory.find((one) => Math.abs(one.t - t) < 1e-9);
-        if (!row) continue; // rows of the table may be further apart than frames
-        for (const body of await page.$$eval("[data-body][data-x]", (all) => all.map(({ dataset }) => ({ ...dataset })))) {
-          for (const key of ["x", "y", "phi"]) {
-            const [shown, wanted] = [Number(body[key]), row[`${body.body}.${key}`]];
-            // The page holds some seven digits.
-            if (!(Math.abs(shown - wanted) <= 1e-6 * Math.max(1, Math.abs(wanted)))) {
-              problem(`at t = ${t} ${body.body}.${key} is ${shown}, not ${wanted}`);
-            }
-          }
-        }
-      }
-      const numbers = await page.$$eval("[data-summary]", (all) => all.map(({ dataset }) => [dataset.summary, dataset.value]));
-      if (numbers.length === 0) problem("shows no number of the summary");
-      for (const [path, value] of numbers) {
-        const wanted = at(summary, path);
-        if (String(value) !== String(wanted) && Number(value) !== Number(wanted)) {
-          problem(`${path} is ${value}, not ${wanted}`);
-        }
-      }
+      await page.goto(pathToFileURL(resolve(folder, file)).href);
+      if (file === "report.html") await ofRun(page, folder, problem, width === windows[0][0]);
       await page.evaluate(() => document.querySelectorAll("details").forEach((one) => one.setAttribute("open", "")));
-      (await page.evaluate(overlaps)).forEach((text) => problem(`texts overlap in ${text}`));
-      const sideways = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
-      if (sideways > 0) problem(`scrolls sideways by ${sideways} px`);
+      await anyPage(page, problem);
       await page.close();
     }
   }
@@ -104,5 +111,5 @@ try {
   await browser.close();
 }
 problems.forEach((text) => console.error(text));
-console.log(`${runs.length} reports at ${widths.join(" and ")} px: ${problems.length} problems`);
+console.log(`${folders.length} pages at ${windows.map(([width]) => width).join(" and ")} px: ${problems.length} problems`);
 process.exitCode = problems.length === 0 ? 0 : 1;

@@ -63,7 +63,7 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
     });
     drop(progress);
     match study {
-        Ok(study) => match write_all(&study, reserved, &resolved, &scene) {
+        Ok(study) => match write_all(&study, reserved, &resolved, &scene, &words_of(options, &folder)) {
             Ok(()) => {
                 console.note(&format!("results in {0}, report in {0}/tradeoff.html", folder.display()));
                 Exit::FinishedRun
@@ -94,12 +94,22 @@ fn load(options: &Options) -> Result<(SceneSource, StudyScene, Resolved), LoadEr
     Ok((scene, source, resolved))
 }
 
+/// What names the scene on a command line; one from standard input is the one that was written.
+fn words_of(options: &Options, folder: &Path) -> Vec<String> {
+    if options.scene == Path::new("-") {
+        return vec![folder.join("scene.toml").display().to_string()];
+    }
+    let base = options.base.iter().flat_map(|base| ["--base".to_owned(), base.display().to_string()]);
+    std::iter::once(options.scene.display().to_string()).chain(base).collect()
+}
+
 /// Writes the files, and the sentences to standard output.
 fn write_all(
     study: &Tradeoff,
     reserved: Reserved,
     resolved: &Resolved,
     scene: &SceneSource,
+    words: &[String],
 ) -> Result<(), Box<dyn Error>> {
     let results = reserved.create()?;
     let file = |file: &str| scene.seen_from(results.folder(), file);
@@ -108,7 +118,8 @@ fn write_all(
     for (name, svg) in write::figures(study)? {
         results.write(&format!("figures/{name}"), svg)?;
     }
-    results.write("tradeoff.html", write::page(study)?)?;
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    results.write("tradeoff.html", write::page(study, &words)?)?;
     results.write("tradeoff.json", write::json(study))?;
     let findings = write::findings(study);
     let lines = write::advice(study).into_iter().chain(findings.iter().map(|line| format!("  {line}")));

@@ -77,7 +77,7 @@ fn a_doubtful_scene_is_warned_of_and_exits_with_0() {
         assert!(warned && stderr.contains(says), "{set}:\n{stderr}");
     }
     let (_, _, stderr) = check(&[&scenario("free-rocking-on-ground"), "--set", "time.step=10 ms"]);
-    assert!(stderr.contains("a tenth of the rocking time sqrt(4R/3g) of `rocker`, 9.694e-2 s"), "{stderr}");
+    assert!(stderr.contains("a tenth of the rocking time sqrt(4R/3g) of `rocker`, 96.94 ms"), "{stderr}");
 }
 
 #[test]

@@ -187,3 +187,56 @@ fn a_full_disk_ends_a_run_with_the_reason_and_whole_rows() {
         assert_eq!(summary["ended"], "disk-full");
     }
 }
+
+#[test]
+fn files_that_are_not_of_a_run_stay_and_are_told() {
+    let folder = folder("foreign");
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/free-rocking-on-ground.toml");
+    let run = |more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_teeter"));
+        command.arg("run").arg(&scene).args(["--out", "out", "--set", "time.end=10 ms"]).args(more);
+        command.current_dir(&folder).output().unwrap()
+    };
+    std::fs::create_dir(folder.join("out")).unwrap();
+    std::fs::write(folder.join("out/thesis.tex"), "mine").unwrap();
+    let first = run(&[]);
+    assert!(first.status.success(), "{}", stderr(&first));
+    assert!(
+        stderr(&first).contains("out also holds `thesis.tex`, which is not of a run and stays"),
+        "{}",
+        stderr(&first)
+    );
+    std::fs::write(folder.join("out/notes.txt"), "mine").unwrap();
+    let again = run(&["--force"]);
+    assert!(again.status.success(), "{}", stderr(&again));
+    let told = stderr(&again);
+    assert!(told.contains("out also holds 2 files and folders that are not of a run, such as `notes.txt`"), "{told}");
+    assert_eq!(std::fs::read_to_string(folder.join("out/thesis.tex")).unwrap(), "mine");
+}
+
+#[test]
+fn a_scene_from_standard_input_finds_its_files_by_base() {
+    let folder = folder("base");
+    let data = folder.join("data");
+    std::fs::create_dir(&data).unwrap();
+    std::fs::write(data.join("push.csv"), "0,0\n0.01,1\n1,0\n").unwrap();
+    let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/free-rocking-on-ground.toml");
+    let scene = std::fs::read_to_string(scenario).unwrap()
+        + "\n[signal.push]\nshape = \"table\"\nfile = \"push.csv\"\n\n[force.push]\non = \"rocker\"\nforce = [\"10 mN\", \"0 N\"]\nsignal = \"push\"\n";
+    let run = |more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_teeter"));
+        command.args(["run", "-", "--set", "time.end=10 ms", "--force"]).args(more).current_dir(&folder);
+        command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        std::io::Write::write_all(&mut child.stdin.take().unwrap(), scene.as_bytes()).unwrap();
+        child.wait_with_output().unwrap()
+    };
+    let lost = run(&[]);
+    assert_eq!(lost.status.code(), Some(2), "{}", stderr(&lost));
+    assert!(stderr(&lost).contains("push.csv"), "{}", stderr(&lost));
+    let found = run(&["--base", "data"]);
+    assert!(found.status.success(), "{}", stderr(&found));
+    // Its scene finds the file from where it stands.
+    let written = std::fs::read_to_string(folder.join("runs/stdin/scene.toml")).unwrap();
+    assert!(written.contains("data/push.csv"), "{written}");
+}

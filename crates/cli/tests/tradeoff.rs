@@ -38,11 +38,14 @@ fn a_study_writes_its_files_and_says_the_same_again() {
     assert!(stderr.contains("tradeoff.html"), "{stderr}");
     let stdout = String::from_utf8(first.stdout).unwrap();
     assert!(
-        stdout.starts_with("for 10 % of accuracy over the whole 0.2 s use `--set time.end=\"0.2 s\" --set time.")
+        stdout.starts_with("to be within 10 % over the whole 0.2 s use `--set time.end=\"0.2 s\" --set time.")
             && stdout.lines().next().unwrap().matches("time.step=").count() == 1,
         "{stdout}"
     );
-    assert!(stdout.contains("× real time") && stdout.contains("error bars of the reference:"), "{stdout}");
+    assert!(
+        stdout.contains(" of real time (off by at most ") && stdout.contains("error bars of the reference:"),
+        "{stdout}"
+    );
 
     let again = tradeoff(&folder, &[&SHORT[..], &["--out", "again", "--quiet"]].concat());
     assert!(again.status.success() && again.stderr.is_empty());
@@ -72,6 +75,26 @@ fn a_study_writes_its_files_and_says_the_same_again() {
     let checked = Command::new(env!("CARGO_BIN_EXE_teeter")).current_dir(&folder).args(arguments).output().unwrap();
     let stderr = String::from_utf8_lossy(&checked.stderr).into_owned();
     assert!(checked.status.success() && !stderr.contains("warning"), "{stderr}");
+
+    // The commands of the page, in a shell.
+    let page = std::fs::read_to_string(folder.join("again/tradeoff.html")).unwrap();
+    let commands: Vec<String> = page
+        .split("<code>teeter run ")
+        .skip(1)
+        .map(|piece| {
+            piece.split("</code>").next().unwrap().replace("&quot;", "\"").replace("&#39;", "'").replace("&amp;", "&")
+        })
+        .collect();
+    assert!(commands.len() > 10, "advice, front and table: {}", commands.len());
+    #[cfg(unix)]
+    for command in &commands[..2] {
+        let line = format!("\"$TEETER\" run {command} --out from-the-page --force --quiet");
+        let mut ran = Command::new("sh");
+        ran.current_dir(&folder).env("TEETER", env!("CARGO_BIN_EXE_teeter")).args(["-c", &line]);
+        assert!(ran.status().unwrap().success(), "{line}");
+        let scene = std::fs::read_to_string(folder.join("from-the-page/scene.toml")).unwrap();
+        assert!(scene.contains("0.2 s"), "the user's own settings are in it: {scene}");
+    }
 
     let blocked = tradeoff(&folder, &[&SHORT[..], &["--out", "again"]].concat());
     assert_eq!(blocked.status.code(), Some(2));

@@ -34,6 +34,7 @@ pub struct Panel {
     ticks_at: Vec<(f64, f64)>,
     guides: Vec<f64>,
     shaded: Option<(f64, String)>,
+    labels: Vec<(f64, f64, String)>,
     height: Option<f64>,
 }
 
@@ -61,7 +62,15 @@ impl Panel {
     }
 
     fn with_content(content: Content) -> Self {
-        Self { content, note: None, ticks_at: Vec::new(), guides: Vec::new(), shaded: None, height: None }
+        Self {
+            content,
+            note: None,
+            ticks_at: Vec::new(),
+            guides: Vec::new(),
+            shaded: None,
+            labels: Vec::new(),
+            height: None,
+        }
     }
 
     /// Adds series: later ones are drawn above earlier ones, marks above lines. No effect on a
@@ -116,7 +125,14 @@ impl Panel {
         self
     }
 
-    /// Shades the region below this y, with a label in the legend.
+    /// Rings points and writes a text beside each: x, y, text.
+    #[must_use]
+    pub fn labels(mut self, labels: impl IntoIterator<Item = (f64, f64, String)>) -> Self {
+        self.labels.extend(labels);
+        self
+    }
+
+    /// Shades the region below this y, with a label in the legend, if it isn't empty.
     #[must_use]
     pub fn shaded_below(mut self, y: f64, label: impl Into<String>) -> Self {
         self.shaded = Some((y, label.into()));
@@ -157,7 +173,8 @@ impl Panel {
         match &self.content {
             Content::Plot { series, .. } => {
                 let named = series.iter().enumerate().filter_map(|(k, series)| Entry::of(series, series.number_at(k)));
-                let shaded = self.shaded.iter().map(|(_, name)| Entry { symbol: Symbol::Swatch(Colour::Shade), name });
+                let shaded = self.shaded.iter().filter(|(_, name)| !name.is_empty());
+                let shaded = shaded.map(|(_, name)| Entry { symbol: Symbol::Swatch(Colour::Shade), name });
                 named.chain(shaded).collect()
             }
             Content::Bands { key, .. } => {
@@ -219,6 +236,7 @@ impl Panel {
                 let _ = writeln!(svg, "<path d=\"{path}\" {}/>", mark_style(marks.number_at(k), hollow, theme));
             }
         }
+        self.draw_labels(svg, frame, theme, y);
         let ticks = self.ticks_at.iter().filter(|(x, _)| frame.x.contains(*x));
         let ticks: String = ticks
             .map(|&(x, part)| match part {
@@ -237,6 +255,31 @@ impl Panel {
             top + 0.5 * height,
             escaped(&y.label)
         );
+    }
+}
+
+impl Panel {
+    fn draw_labels(&self, svg: &mut String, frame: &Frame, theme: Theme, y: &Axis) {
+        let ink = Colour::Ink.value(theme);
+        let mut above = f64::NEG_INFINITY;
+        for (x, value, text) in self.labels.iter().filter(|(x, value, _)| frame.x.contains(*x) && y.contains(*value)) {
+            let (px, py) = (frame.px(*x), frame.top + y.below_high(*value, frame.height));
+            // Towards the middle, so that no text leaves the frame.
+            let (side, anchor) = if px > LEFT + 0.6 * frame.width() { (-8.0, "end") } else { (8.0, "start") };
+            // Near the one before, on the other side of the point.
+            let raised = if (py - above).abs() < 12.0 || py - frame.top < 16.0 { 14.0 } else { -6.0 };
+            above = py;
+            let _ = writeln!(
+                svg,
+                "<circle cx=\"{px:.2}\" cy=\"{py:.2}\" r=\"5.5\" fill=\"none\" stroke=\"{ink}\" stroke-width=\"1\"/>\
+                 <text x=\"{:.2}\" y=\"{:.2}\" text-anchor=\"{anchor}\" fill=\"{ink}\" stroke=\"{}\" stroke-width=\"3\" \
+                 paint-order=\"stroke\">{}</text>",
+                px + side,
+                py + raised,
+                Colour::Paper.value(theme),
+                escaped(text)
+            );
+        }
     }
 }
 
@@ -328,6 +371,19 @@ fn line_path(points: &[(f64, f64)], px: impl Fn(f64) -> f64, py: impl Fn(f64) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn labelled_points_are_ringed_and_their_text_stays_in_the_frame() {
+        let axis = || Axis::between("", 0.0, 1.0);
+        let labels = [(0.2, 0.5, "a<b".to_owned()), (0.95, 0.2, "right".to_owned()), (2.0, 0.5, "outside".to_owned())];
+        let panel = Panel::new(axis()).labels(labels).shaded_below(0.1, "");
+        assert!(panel.entries().is_empty(), "a shade without a name is not in the legend");
+        let svg = crate::Figure::new("f", "f", axis()).panel(panel).to_svg();
+        assert_eq!(svg.matches("<circle").count(), 2);
+        assert!(svg.contains(">a&lt;b</text>") && !svg.contains("outside"));
+        let right = svg.split("<text").find(|piece| piece.contains(">right<")).unwrap();
+        assert!(right.contains("text-anchor=\"end\""), "{right}");
+    }
 
     #[test]
     fn a_line_breaks_where_it_is_not_finite() {

@@ -146,6 +146,7 @@
       .join(" · ");
     // In motion an impact is ringed for a moment, at rest only in the frame that it led to.
     scene.draw(position, clock ? 0.25 * factor() : 0);
+    if (!clock) scene.root.setAttribute("aria-label", spoken.picture(frame));
     plots.showTime(t);
     for (const [past, own] of rowsOf) {
       const now = own[indexAt(past, t)];
@@ -173,6 +174,7 @@
     play.textContent = on ? "Pause" : "Play";
     play.setAttribute("aria-label", play.textContent);
     if (on) requestAnimationFrame(tick);
+    else scene.root.setAttribute("aria-label", spoken.picture(frame));
   }
 
   function tick(wall) {
@@ -302,9 +304,11 @@
     0: () => plots.zoom(start, end),
   };
   document.addEventListener("keydown", (event) => {
-    // A control keeps its own keys.
+    // A control keeps its own keys. Those that one may hit by speaking or scrolling act only where a plot or the picture
+    // has the focus.
     const own = event.target.closest?.("input, select, button, summary, pre, .scroll");
-    const mine = !own || (own === slider && event.key === " ");
+    const anywhere = [" ", "ArrowLeft", "ArrowRight"].includes(event.key);
+    const mine = own ? own === slider && event.key === " " : anywhere || event.target.closest?.(".plot, #scene");
     const action = keys[event.key];
     if (!mine || !action || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();

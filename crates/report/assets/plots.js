@@ -67,8 +67,7 @@ const plots = (() => {
     panel.element.id = `panel-${panel.id}`;
     if (!panel.portrait) tellApart(panel);
     head(panel, panel.element);
-    const unit = panel.unit ? ` in ${panel.unit}` : "";
-    panel.svg = svgElement("svg", { class: "plot", role: "img", "aria-label": `${panel.title}${unit}` }, panel.element);
+    panel.svg = svgElement("svg", { class: "plot", role: "img", tabindex: 0, "aria-label": spoken.plot(panel) }, panel.element);
     panels.push(panel);
     if (!panel.portrait) listen(panel);
   }

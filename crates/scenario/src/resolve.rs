@@ -25,12 +25,13 @@ use names::BlockName;
 use std::collections::BTreeMap;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::dimension::Dimension;
 use crate::document::Document;
 use crate::scene::{AngleUnit, ContactScene, Display, LengthUnit, Scene, SolverScene, SupportingBody, Time, most_used};
 use crate::scene_checks;
 use crate::value::Value;
 use crate::words::Word;
-use crate::{output_size, wording};
+use crate::{output_size, quantity, wording};
 use teeter_contact::Law;
 use teeter_solvers::SOLVERS;
 
@@ -451,8 +452,15 @@ impl<'a, 'f> Resolver<'a, 'f> {
 fn fewer_rows(scene: &Scene, document: &Document) -> Option<Diagnostic> {
     let every = scene.every.filter(|_| !document.is_given("output.every"))?;
     let contacts = if scene.crowd.is_some() { ", and contacts.csv has only contacts with an impulse" } else { "" };
-    let rule = format!("{} blocks, so that the tables have a row only every {every:e} s{contacts}", scene.blocks.len());
-    let remedy = format!("give every = \"{:e} s\" in [output] for a row every step", scene.time.step);
+    let rule = format!(
+        "{} blocks, so that the tables have a row only every {}{contacts}",
+        scene.blocks.len(),
+        wording::seconds(every, 4)
+    );
+    let remedy = format!(
+        "give every = \"{}\" in [output] for a row every step",
+        quantity::format(scene.time.step, Dimension::TIME)
+    );
     Some(document.error("output.every", rule, remedy).as_note())
 }
 

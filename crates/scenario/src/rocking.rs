@@ -8,6 +8,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::scene::{ContactScene, GroundScene, Placement, Scene, SupportingBody};
+use crate::wording;
 use teeter_integrator::ImpactLaw;
 
 /// A sum above this fraction of the swing gives a warning: on a beam the sum is smaller than
@@ -34,13 +35,14 @@ pub(crate) fn coarse(scene: &Scene, document: &Document) -> Option<Diagnostic> {
         return None;
     }
     let rule = format!(
-        "under-resolved: `{}` rocks with some {impacts} impacts, each up to a step late, together {:.0} % of its swing: the motion is likely off by more \
+        "under-resolved: `{}` rocks with some {impacts} impacts, each up to a step late, together {} its swing: the motion is likely off by more \
          than 10 %",
         block.name,
-        100.0 * part
+        wording::share_of(part)
     );
     let step = 0.25 * COARSE / part * scene.time.step;
-    let remedy = format!("use a step of at most {step:.0e} s; `teeter tradeoff` measures the accuracy");
+    let remedy =
+        format!("use a step of at most {}; `teeter tradeoff` measures the accuracy", wording::seconds(step, 1));
     Some(document.error("time.step", rule, remedy).as_warning())
 }
 

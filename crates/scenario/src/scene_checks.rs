@@ -278,10 +278,12 @@ fn resolved_in_time(name: &str, law: &PairLaw, mass: f64, scene: &Scene, documen
         return None;
     }
     let rule = format!(
-        "the contact of a block of {mass:.3} kg lasts some {half_period:.1e} s, less than {STEPS_A_CONTACT} steps: it is \
-         not resolved"
+        "the contact of a block of {mass:.3} kg lasts some {}, less than {STEPS_A_CONTACT} steps: it is \
+         not resolved",
+        wording::seconds(half_period, 2)
     );
-    let remedy = format!("use a step of at most {:.0e} s, or a softer contact", half_period / STEPS_A_CONTACT);
+    let remedy =
+        format!("use a step of at most {}, or a softer contact", wording::seconds(half_period / STEPS_A_CONTACT, 1));
     Some(document.error(&format!("contact.{name}.stiffness"), rule, remedy).as_warning())
 }
 
@@ -317,8 +319,9 @@ fn step(scene: &Scene, document: &Document) -> Option<Diagnostic> {
     if scene.time.step <= time / STEPS_A_MOTION {
         return None;
     }
-    let rule = format!("longer than a tenth of {what}, {time:.3e} s: the motion in contact is not resolved");
-    let remedy = format!("use a step of at most {:.1e} s", time / STEPS_A_MOTION);
+    let rule =
+        format!("longer than a tenth of {what}, {}: the motion in contact is not resolved", wording::seconds(time, 4));
+    let remedy = format!("use a step of at most {}", wording::seconds(time / STEPS_A_MOTION, 2));
     Some(document.error("time.step", rule, remedy).as_warning())
 }
 

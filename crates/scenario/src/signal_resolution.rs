@@ -5,6 +5,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::record_checks;
 use crate::scene::{AxisScene, ContactScene, History, MotionScene, Scene, SignalScene, SupportingBody};
+use crate::wording::seconds;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use teeter_integrator::{Formula, Given, Signal, Table};
@@ -154,12 +155,23 @@ fn swing(path: &str, formula: &Formula, in_the_mean: &str, scene: &Scene, docume
     let at = |key: &str| format!("{path}.{key}");
     let (key, rule) = if document.has(&at("duration")) {
         let lasts = until - from;
-        (at("duration"), format!("it lasts {lasts:.3e} s, {:.2} steps of {step:e} s: {in_the_mean}", lasts / step))
+        (
+            at("duration"),
+            format!("it lasts {}, {:.2} steps of {}: {in_the_mean}", seconds(lasts, 4), lasts / step, seconds(step, 4)),
+        )
     } else {
         let key = if document.has(&at("period")) { at("period") } else { at("frequency") };
-        (key, format!("its period of {period:.3e} s is {:.2} steps of {step:e} s: {in_the_mean}", period / step))
+        (
+            key,
+            format!(
+                "its period of {} is {:.2} steps of {}: {in_the_mean}",
+                seconds(period, 4),
+                period / step,
+                seconds(step, 4)
+            ),
+        )
     };
-    let remedy = format!("use a step of at most {:.1e} s", period / STEPS_A_SWING);
+    let remedy = format!("use a step of at most {}", seconds(period / STEPS_A_SWING, 2));
     Some(document.error(&key, rule, remedy).as_warning())
 }
 
@@ -183,11 +195,13 @@ fn rows(key: &str, table: &Table, in_the_mean: &str, scene: &Scene, document: &D
         return None;
     }
     let rule = format!(
-        "its rows are as close as {closest:.3e} s, closer than the step of {step:e} s, with peaks between the ends of steps of up to \
+        "its rows are as close as {}, closer than the step of {}, with peaks between the ends of steps of up to \
          {:.0} % of its largest value: {in_the_mean}",
+        seconds(closest, 4),
+        seconds(step, 4),
         100.0 * worst
     );
-    let remedy = format!("use a shorter step: {closest:.1e} s resolves every row");
+    let remedy = format!("use a shorter step: {} resolves every row", seconds(closest, 2));
     Some(document.error(key, rule, remedy).as_warning())
 }
 
@@ -210,9 +224,10 @@ fn turns(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         let turn = rate.abs() * step;
         (turn >= FAR_TURN).then(|| {
             let rule = format!(
-                "it turns by {turn:.2} rad in a step of {step:e} s, more than {FAR_TURN} rad, which a step can't follow"
+                "it turns by {turn:.2} rad in a step of {}, more than {FAR_TURN} rad, which a step can't follow",
+                seconds(step, 4)
             );
-            let remedy = format!("use a step of at most {:.1e} s", FAR_TURN / rate.abs());
+            let remedy = format!("use a step of at most {}", seconds(FAR_TURN / rate.abs(), 2));
             document.error(&path, rule, remedy).as_warning()
         })
     };
@@ -257,14 +272,16 @@ fn rises(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         });
         let (key, lasts) = worst.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
         let rule = format!(
-            "it changes within {lasts:.3e} s, {:.2} steps of {step:e} s: the position stays right, but not the velocity with which it \
+            "it changes within {}, {:.2} steps of {}: the position stays right, but not the velocity with which it \
              pushes what touches it",
-            lasts / step
+            seconds(lasts, 4),
+            lasts / step,
+            seconds(step, 4)
         );
         let remedy = if lasts < A_JUMP * step {
             "this is a jump: give the change its real duration, of at least some steps".to_owned()
         } else {
-            format!("use a step of at most {:.1e} s", lasts / STEPS_A_RISE)
+            format!("use a step of at most {}", seconds(lasts / STEPS_A_RISE, 2))
         };
         Some(document.error(&format!("{path}.{key}"), rule, remedy).as_warning())
     };

@@ -12,6 +12,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::scene::Scene;
+use crate::wording;
 use teeter_beam::{Beam, MatrixWeights};
 
 /// An error above this fraction of the largest deflection gives a warning.
@@ -92,14 +93,14 @@ pub(crate) fn coarse(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         let part = swing.off(theta, scene.time.step, end);
         (part > SWING_OFF).then(|| {
             let rule = format!(
-                "under-resolved: with steps of {:e} s the initial vibration of `{}`, at {:.4} Hz, lags or decays by up to {:.0} % of its amplitude",
-                scene.time.step,
+                "under-resolved: with steps of {} the initial vibration of `{}`, at {:.4} Hz, lags or decays by up to {} its amplitude",
+                wording::seconds(scene.time.step, 4),
                 beam.name,
                 swing.omega / std::f64::consts::TAU,
-                100.0 * part
+                wording::share_of(part)
             );
             let step = finer(scene.time.step, part, theta);
-            document.error("time.step", rule, format!("use a step of at most {step:.0e} s")).as_warning()
+            document.error("time.step", rule, format!("use a step of at most {}", wording::seconds(step, 1))).as_warning()
         })
     };
     scene.beams.iter().filter_map(of).collect()

@@ -4,6 +4,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::scene::{Crowd, LoadKind, Scene};
 use crate::source::Origin;
+use crate::wording;
 use std::collections::BTreeSet;
 
 /// Most findings of one kind that are listed.
@@ -38,7 +39,8 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     }
     if let Some(every) = scene.every {
         if every < time.step * (1.0 - 1e-9) {
-            let rule = format!("shorter than the step of {:e} s: every step gives only one row", time.step);
+            let rule =
+                format!("shorter than the step of {}: every step gives only one row", wording::seconds(time.step, 4));
             idle("output.every", rule, "use a shorter step, or leave it out for a row every step");
         } else if every > end * (1.0 + 1e-9) {
             let rule = format!("longer than the run of {end} s: only its start and end are written");

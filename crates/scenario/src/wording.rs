@@ -35,6 +35,37 @@ pub fn theory(beam: &BeamScene) -> &'static str {
     if beam.is_sheared() { "timoshenko" } else { "euler-bernoulli" }
 }
 
+/// A time with so many digits, in a unit that suits and that a scene takes: `100 us`.
+#[must_use]
+pub fn seconds(t: f64, digits: usize) -> String {
+    let digits = digits.max(1) - 1;
+    let rounded: f64 = format!("{t:.digits$e}").parse().unwrap_or(t);
+    let units = [(1.0, 0, "s"), (1e-3, 3, "ms"), (1e-6, 6, "us")];
+    let unit = units.into_iter().find(|(least, ..)| rounded.abs() >= *least * (1.0 - 1e-9));
+    match unit {
+        Some((_, power, unit)) if rounded.abs() < 1e6 => {
+            // Parsed with its exponent, so that no product is rounded.
+            let text = format!("{t:.digits$e}");
+            let scaled = text.split_once('e').and_then(|(mantissa, exponent)| {
+                format!("{mantissa}e{}", exponent.parse::<i32>().ok()? + power).parse::<f64>().ok()
+            });
+            format!("{} {unit}", scaled.unwrap_or(rounded))
+        }
+        // Shorter than any step, or longer than any run.
+        _ => format!("{rounded:e} s"),
+    }
+}
+
+/// A part of something, for sentences: "45 % of", and of what is more than twice the whole "7.1 times".
+#[must_use]
+pub fn share_of(part: f64) -> String {
+    if part <= 2.0 { format!("{:.0} % of", 100.0 * part) } else { format!("{} times", whole_or_two_digits(part)) }
+}
+
+fn whole_or_two_digits(x: f64) -> f64 {
+    format!("{x:.1e}").parse().unwrap_or(x)
+}
+
 /// "1/68 of its span".
 #[must_use]
 pub fn part_of(sag: f64, span: f64) -> String {
@@ -43,5 +74,22 @@ pub fn part_of(sag: f64, span: f64) -> String {
         ratio if ratio >= 9.5 => format!("1/{ratio:.0} of its span"),
         ratio if ratio >= 1.0 => format!("1/{ratio:.1} of its span"),
         _ => format!("{:.1e} times its span", sag / span),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_in_a_unit_that_suits() {
+        let told = [1e-4, 0.000_123_456, 0.25, 5.0, 1234.5, 3e-9, 9.999_9e-4, 0.0].map(|t| seconds(t, 3));
+        assert_eq!(told, ["100 us", "123 us", "250 ms", "5 s", "1230 s", "3e-9 s", "1 ms", "0e0 s"]);
+        assert_eq!((seconds(2.4e-5, 1), seconds(7e-7, 2)), ("20 us".to_owned(), "7e-7 s".to_owned()));
+    }
+
+    #[test]
+    fn more_than_the_whole_is_told_by_how_many_times() {
+        assert_eq!([0.454, 1.0, 7.07, 707.1].map(share_of), ["45 % of", "100 % of", "7.1 times", "710 times"]);
     }
 }

@@ -89,6 +89,16 @@ fn arguments<'a>(pairs: impl Iterator<Item = (&'a str, &'a str)>, f: &mut dyn fm
     Ok(())
 }
 
+/// A word as it must be typed in a shell.
+pub(crate) fn as_word(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "/._-+,:@%=".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
 /// The user's own settings, in their order, as arguments.
 pub(crate) fn as_arguments(pairs: &[(String, String)]) -> String {
     let mut text = String::new();
@@ -107,6 +117,13 @@ mod tests {
         assert_eq!(setting.to_string(), "--set solver.method=pgs --set time.step=\"50 us\"");
         assert_eq!(Setting::none().set("a", "\"x\"").to_string(), "--set a='\"x\"'");
         assert_eq!(Setting::none().to_string(), "");
+    }
+
+    #[test]
+    fn paths_are_words_of_a_shell() {
+        assert_eq!(as_word("scenes/a-1.toml"), "scenes/a-1.toml");
+        assert_eq!(as_word("my scenes/it's.toml"), "'my scenes/it'\\''s.toml'");
+        assert_eq!(as_word("a$b"), "'a$b'");
     }
 
     #[test]

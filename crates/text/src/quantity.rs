@@ -121,14 +121,18 @@ pub fn parse(text: &str, wanted: Dimension) -> Result<f64, QuantityError> {
     Ok(quantity.value)
 }
 
+/// So many more digits in the SI unit than in another make the other the one that suits.
+const MANY_DIGITS: usize = 8;
+
 /// Writes a value, given in SI units, so that [`parse`] returns the same double, bit for bit: in the
-/// SI unit if its size is usual, else in the usual unit that gives the shortest text. The value should be finite; NaN and infinities are written by
+/// SI unit if its size is usual and another doesn't save eight characters or more, else in the usual unit that gives the shortest text. The value should be finite; NaN and infinities are written by
 /// name and refused when read.
 ///
 /// ```
 /// use teeter_text::{dimension::Dimension, quantity};
 /// assert_eq!(quantity::format(0.36, Dimension::LENGTH), "0.36 m");
 /// assert_eq!(quantity::format(69e9, Dimension::PRESSURE), "69 GPa");
+/// assert_eq!(quantity::format(5_f64.to_radians(), Dimension::ANGLE), "5 deg");
 /// ```
 pub fn format(value: f64, dimension: Dimension) -> String {
     let unit = dimension.unit();
@@ -140,16 +144,18 @@ pub fn format(value: f64, dimension: Dimension) -> String {
         text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
     };
     let own = format!("{} {unit}", plain(value));
-    // Within these sizes people read the SI unit as it is.
-    if value == 0.0 || !value.is_finite() || (1e-2..1e4).contains(&value.abs()) {
+    if value == 0.0 || !value.is_finite() {
         return own;
     }
+    // Within these sizes people read the SI unit as it is, unless it hides a round number: 5 deg.
+    let saved = if (1e-2..1e4).contains(&value.abs()) { MANY_DIGITS } else { 0 };
+    let longest = own.chars().count().saturating_sub(saved);
     let others = dimension.usual_units().iter().filter_map(|other| {
         let factor = parse(&format!("1 {other}"), dimension).ok()?;
         let text = format!("{} {other}", plain(value / factor));
         // A quotient that was rounded may read back to another double.
         let same = parse(&text, dimension).is_ok_and(|read| read.to_bits() == value.to_bits());
-        same.then_some(text)
+        (same && text.chars().count() <= longest).then_some(text)
     });
     // Of texts of the same length the first, which is in the SI unit.
     std::iter::once(own.clone()).chain(others).min_by_key(|text| text.chars().count()).unwrap_or(own)

@@ -79,39 +79,47 @@ pub(super) const CSV_HEADER: &str =
 #[derive(Debug)]
 pub(super) struct RowColumns {
     file: usize,
-    solver: usize,
-    used: usize,
     tolerance: bool,
     asymmetry: bool,
 }
 
+/// Largest width of the table, in columns of a terminal.
+const WIDTH: usize = 100;
+
+/// Width of the other columns with the gaps between them: solver, contacts, outcome, residual,
+/// iterations, time.
+const OTHERS: usize = 2 + 18 + 2 + 8 + 2 + 14 + 2 + 8 + 2 + 6 + 2 + 9;
+
+/// Least width of the names of files: they are cut to that, if anything must.
+const SHORTEST_FILE: usize = 12;
+
+/// Width of an optional column with the gap before it.
+const OPTIONAL: usize = 11;
+
 impl RowColumns {
     pub(super) fn new(inputs: &[Input], several_tolerances: bool) -> Self {
-        let widest = |names: &mut dyn Iterator<Item = usize>, title: &str| names.max().unwrap_or(0).max(title.len());
-        let solver = widest(&mut teeter_solvers::SOLVERS.iter().map(|info| info.name.len()), "solver");
-        Self {
-            file: widest(&mut inputs.iter().map(|input| input.file.chars().count()), "file"),
-            solver,
-            // The method used by a chain is also a solver name.
-            used: solver,
-            tolerance: several_tolerances,
-            asymmetry: inputs.iter().any(|input| input.asymmetry > ASYMMETRIC),
-        }
+        let asymmetry = inputs.iter().any(|input| input.asymmetry > ASYMMETRIC);
+        let widest = inputs.iter().map(|input| input.file.chars().count()).max().unwrap_or(0);
+        Self::of_width(widest, several_tolerances, asymmetry)
+    }
+
+    fn of_width(widest: usize, tolerance: bool, asymmetry: bool) -> Self {
+        let optional = OPTIONAL * (usize::from(tolerance) + usize::from(asymmetry));
+        let room = WIDTH.saturating_sub(OTHERS + optional).max(SHORTEST_FILE);
+        Self { file: widest.max("file".len()).min(room), tolerance, asymmetry }
     }
 
     pub(super) fn header(&self) -> String {
         let tolerance = self.tolerance.then_some("tolerance");
         let asymmetry = self.asymmetry.then_some("asymmetry");
-        self.line(
-            ["file", "solver", "used", "dim", "contacts", "outcome", "residual", "iterations", "time / ms"],
-            tolerance,
-            asymmetry,
-        )
+        self.line(["file", "solver", "contacts", "outcome", "residual", "iter.", "time / ms"], tolerance, asymmetry)
     }
 
     pub(super) fn row(&self, row: &Row) -> String {
         let m = &row.measured;
-        let [dimension, contacts] = [row.dimension, row.contacts].map(|n| n.to_string());
+        // A chain of solvers, with the one that it took.
+        let solver = if m.used == row.solver { row.solver.to_owned() } else { format!("{}: {}", row.solver, m.used) };
+        let contacts = format!("{} {}D", row.contacts, row.dimension);
         let (residual, iterations, time) =
             (format!("{:.1e}", m.residual), m.iterations.to_string(), significant(m.time_ms));
         let tolerance = self.tolerance.then(|| format!("{:e}", row.tolerance));
@@ -120,20 +128,30 @@ impl RowColumns {
             _ => String::new(),
         });
         self.line(
-            [&row.file, row.solver, m.used, &dimension, &contacts, m.outcome, &residual, &iterations, &time],
+            [&self.shortened(&row.file), &solver, &contacts, m.outcome, &residual, &iterations, &time],
             tolerance.as_deref(),
             asymmetry.as_deref(),
         )
     }
 
-    fn line(&self, cells: [&str; 9], tolerance: Option<&str>, asymmetry: Option<&str>) -> String {
-        let [file, solver, used, dimension, contacts, outcome, residual, iterations, time] = cells;
-        let (a, b, c) = (self.file, self.solver, self.used);
+    /// The end of a file's name, where it is too long: it is what tells files apart.
+    fn shortened(&self, file: &str) -> String {
+        let length = file.chars().count();
+        if length <= self.file {
+            return file.to_owned();
+        }
+        let rest: String = file.chars().skip(length + 1 - self.file).collect();
+        format!("…{rest}")
+    }
+
+    fn line(&self, cells: [&str; 7], tolerance: Option<&str>, asymmetry: Option<&str>) -> String {
+        let [file, solver, contacts, outcome, residual, iterations, time] = cells;
+        let width = self.file;
         let tolerance = tolerance.map(|text| format!("  {text:>9}")).unwrap_or_default();
         let asymmetry = asymmetry.map(|text| format!("  {text:>9}")).unwrap_or_default();
         let line = format!(
-            "{file:a$}  {solver:b$}  {used:c$}  {dimension:>3}  {contacts:>8}{tolerance}  {outcome:14}  {residual:>8}  \
-             {iterations:>10}  {time:>9}{asymmetry}"
+            "{file:width$}  {solver:18}  {contacts:>8}{tolerance}  {outcome:14}  {residual:>8}  {iterations:>6}  \
+             {time:>9}{asymmetry}"
         );
         format!("{}\n", line.trim_end())
     }
@@ -147,7 +165,31 @@ pub(super) fn significant(x: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::significant;
+    use super::*;
+
+    #[test]
+    fn the_table_fits_a_terminal_and_shows_the_ends_of_long_names() {
+        let measured = Measured {
+            outcome: "max-iterations",
+            used: "acary-cadoux",
+            residual: 1.25e-100,
+            iterations: 100_000,
+            time_ms: 0.000_123,
+            impulses: Vec::new(),
+            complaint: None,
+        };
+        let file = "benches/problems/scenarios/two-blocks-on-beam/two-blocks-on-beam-step000123.hdf5".to_owned();
+        let row =
+            Row { file, solver: "auto", dimension: 3, contacts: 1234, tolerance: 1e-10, asymmetry: 1e-9, measured };
+        for (tolerance, asymmetry) in [(false, false), (true, false), (false, true)] {
+            let columns = RowColumns::of_width(row.file.chars().count(), tolerance, asymmetry);
+            for line in [columns.header(), columns.row(&row)] {
+                assert!(line.trim_end().chars().count() <= WIDTH, "{line}");
+            }
+            assert!(columns.row(&row).contains("000123.hdf5  auto: acary-cadoux   1234 3D"), "{}", columns.row(&row));
+        }
+        assert!(RowColumns::of_width(6, false, false).header().starts_with("file    solver"));
+    }
 
     #[test]
     fn times_show_three_digits() {

@@ -99,7 +99,7 @@ pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary])
     let Some(histories) = histories(records) else { return html };
     html.push_str(
         "<section id=\"records\" class=\"panel\" aria-labelledby=\"records-title\">\n<h3 id=\"records-title\">Recorded \
-         accelerations</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"records-title\"><table>\n\
+         accelerations</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"records-title\"><table>\n\
          <thead><tr><th scope=\"col\">Motion</th><th scope=\"col\">Record</th><th scope=\"col\">Duration<br><small>s</small></th>\
          <th scope=\"col\">PGA<br><small>m/s²</small></th><th scope=\"col\">PGV<br><small>m/s</small></th>\
          <th scope=\"col\">PGD<br><small>m</small></th><th scope=\"col\">Arias intensity<br><small>m/s</small></th>\

@@ -16,10 +16,11 @@ use teeter_plot::escaped;
 const TEMPLATE: &str = include_str!("../../assets/report.html");
 /// The style of the pages.
 pub const STYLE: &str = include_str!("../../assets/report.css");
-const SCRIPTS: [&str; 6] = [
+const SCRIPTS: [&str; 7] = [
     include_str!("../../assets/model.js"),
     include_str!("../../assets/network.js"),
     include_str!("../../assets/export.js"),
+    include_str!("../../assets/spoken.js"),
     include_str!("../../assets/scene.js"),
     include_str!("../../assets/plots.js"),
     include_str!("../../assets/main.js"),
@@ -235,7 +236,7 @@ fn rocking(cycles: &[HalfCycle]) -> String {
     // With one block its name would be a column of repetitions.
     let several = cycles.iter().any(|cycle| cycle.body != cycles[0].body);
     let mut head =
-        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"rocking-title\"><table>\n<thead><tr>"
+        "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"rocking-title\"><table>\n<thead><tr>"
             .to_owned();
     head.push_str(if several { "<th scope=\"col\">Block</th>" } else { "" });
     head.push_str(
@@ -349,7 +350,7 @@ fn reactions(summary: &Summary) -> String {
     }
     let several = summary.beams.len() > 1;
     let mut html = "<section id=\"reactions\" class=\"panel\" aria-labelledby=\"reactions-title\">\n\
-        <h3 id=\"reactions-title\">Reactions of the supports</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" \
+        <h3 id=\"reactions-title\">Reactions of the supports</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"group\" \
         aria-labelledby=\"reactions-title\"><table>\n<thead><tr>"
         .to_owned();
     html.push_str(if several { "<th scope=\"col\">Beam</th>" } else { "" });

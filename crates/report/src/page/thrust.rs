@@ -14,7 +14,7 @@ pub(super) fn section(recorder: &PageRecorder) -> String {
     let mut html = format!(
         "<section id=\"thrust\" class=\"panel\" aria-labelledby=\"thrust-title\">\n<h3 id=\"thrust-title\">Line of \
          thrust at the end</h3>\n<div class=\"page-drawing\">{}</div>\n<details><summary>Eccentricity of the {joints} \
-         joints</summary><div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"thrust-title\"><table>\n\
+         joints</summary><div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"thrust-title\"><table>\n\
          <thead><tr><th scope=\"col\">Joint</th><th scope=\"col\">e<br><small>mm</small></th><th scope=\"col\">e / depth\
          </th><th scope=\"col\">Normal<br><small>N</small></th><th scope=\"col\">Shear<br><small>N</small></th></tr></thead>\n\
          <tbody>\n",

@@ -2,7 +2,7 @@
 
 use super::{Kept, Recorder};
 use crate::bounces::{CONTESTED, Contested};
-use crate::readable::{with_digits, with_unit};
+use crate::readable::{shortest, with_digits, with_unit};
 use crate::resolution::{Of, raise};
 use teeter_integrator::{Model, State, StepReport};
 use teeter_scenario::simulation::Layout;
@@ -65,10 +65,10 @@ impl Recorder<'_> {
         let Some((name, spin)) = ground.chain(blocks).find(|(_, spin)| spin.abs() >= fastest) else { return };
         self.warn_once("far-turn", state.t, || {
             format!(
-                "`{name}` turns by {:.2} rad in the step to t = {} s, and is no longer followed from {FAR_TURN} on; take a step of at most {:.0e} s",
+                "`{name}` turns by {:.2} rad in the step to t = {} s, and is no longer followed from {FAR_TURN} on; take a step of at most {}",
                 spin.abs() * state.dt,
                 state.t,
-                FAR_TURN / spin.abs()
+                with_digits(FAR_TURN / spin.abs(), "s", 1)
             )
         });
     }
@@ -134,11 +134,11 @@ impl Recorder<'_> {
         self.warn_once("fast-pass", state.t, || {
             format!(
                 "`{}` and `{}` come {far:.1e} m past each other in the step to t = {} s, more than half of their shorter sides, so that a contact \
-                 between them may not be seen; take a step of at most {:.0e} s",
+                 between them may not be seen; take a step of at most {}",
                 first.name,
                 second.name,
                 state.t,
-                0.4 * (first.side + second.side) * state.dt / far
+                with_digits(0.4 * (first.side + second.side) * state.dt / far, "s", 1)
             )
         });
     }
@@ -189,8 +189,11 @@ impl Recorder<'_> {
         let layout = self.layout;
         if let Some(coarse) = self.kept.resolution.coarse(&self.bodies, state.dt) {
             let name = layout.blocks.get(coarse.block).map_or("a block", |place| &place.name);
-            let (part, limit, step) =
-                (100.0 * coarse.part, 100.0 * coarse.of.limit(), with_digits(coarse.step, "s", 1));
+            let (limit, step) = (100.0 * coarse.of.limit(), with_digits(coarse.step, "s", 1));
+            let part = match coarse.part {
+                part if part <= 2.0 => format!("{:.1} % of", 100.0 * part),
+                part => format!("{} times", shortest(part, 2)),
+            };
             let what = match coarse.of {
                 Of::Impacts => "its contacts close up to a step late, all together by",
                 Of::Impact => "its contacts close up to a step late, at one of them by",
@@ -198,7 +201,7 @@ impl Recorder<'_> {
             };
             self.warn("under-resolved", None, || {
                 format!(
-                    "steps of {} are too long for the impacts of `{name}`: {what} {part:.1} % of its motion, and from {limit:.1} % on motions are \
+                    "steps of {} are too long for the impacts of `{name}`: {what} {part} its motion, and from {limit:.1} % on motions are \
                      likely off by more than 10 %; take a step of at most {step}, and let `teeter tradeoff` measure what accuracy it gives",
                     with_unit(state.dt, "s"),
                 )

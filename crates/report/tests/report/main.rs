@@ -7,6 +7,7 @@ mod meetings;
 mod memory;
 mod network;
 mod page;
+mod palette;
 mod plots;
 mod records;
 mod sections;

@@ -263,7 +263,7 @@ impl Resolver<'_, '_> {
         let rule = if limit == f64::INFINITY {
             "below 0.5 the scheme is not unconditionally stable".to_owned()
         } else if limit > 0.0 {
-            format!("below 0.5 the scheme is stable only for steps up to {limit:.3e} s on this mesh")
+            format!("below 0.5 the scheme is stable only for steps up to {} on this mesh", wording::seconds(limit, 4))
         } else {
             "below 0.5 the undamped modes of the beam grow at every step size".to_owned()
         };

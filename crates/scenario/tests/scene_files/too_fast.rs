@@ -40,7 +40,7 @@ fn table(rows: impl Iterator<Item = (f64, f64)>) -> String {
 fn signals_that_swing_faster_than_the_step_are_warned_of() {
     let push = |signal: &str| format!("{PUSH}{signal}");
     let half = |lasts: &str| push(&format!("shape = 'half-sine'\nstart = '0.1002 s'\nduration = '{lasts}'"));
-    one(&half("0.6 ms"), "", "signal.s.duration", "6.000e-4 s, 0.60 steps");
+    one(&half("0.6 ms"), "", "signal.s.duration", "600 us, 0.60 steps");
     one(&half("4.9 ms"), "", "signal.s.duration", "4.90 steps");
     none(&half("5 ms"), "");
     for shape in ["harmonic", "one-sine", "ricker\"\npeak = \"0.2 s"] {
@@ -61,7 +61,7 @@ fn signals_that_swing_faster_than_the_step_are_warned_of() {
 fn tables_with_more_in_a_step_than_it_shows_are_warned_of() {
     let push = format!("{PUSH}shape = 'table'\nfile = 'push.csv'\n");
     let zigzag = |rows: u32, every: f64| table((0..=rows).map(move |k| (f64::from(k) * every, f64::from(k % 2))));
-    one(&push, &zigzag(1000, 0.5e-3), "signal.s.file", "as close as 5.000e-4 s");
+    one(&push, &zigzag(1000, 0.5e-3), "signal.s.file", "as close as 500 us");
     none(&push, &zigzag(500, 1e-3));
     // A jump, and fine rows of something slow, lose nothing.
     none(&push, "0,0\n0.1005,0\n0.1005000001,1\n1,1\n");

@@ -1,7 +1,7 @@
 //! Error over time, both logarithmic, as SVG: one figure per quantity.
 
-use super::short;
-use crate::{Quantity, Tradeoff, pareto_front};
+use super::{percent, short};
+use crate::{Advice, Quantity, TARGETS, Tradeoff, pareto_front};
 use teeter_plot::{Axis, AxisError, Figure, Legend, Mark, Panel, Series, Theme};
 
 /// Errors below this are rounding: drawn at the bottom.
@@ -24,6 +24,8 @@ struct Point {
     scheme: usize,
     /// Whether only scheme and step are changed.
     plain: bool,
+    /// Number of its row.
+    row: usize,
 }
 
 /// The figures for files, with their names: one for each quantity of the scene.
@@ -31,21 +33,32 @@ struct Point {
 /// # Errors
 /// [`AxisError`] if a measured time or error can't be shown on a logarithmic axis.
 pub fn figures(study: &Tradeoff) -> Result<Vec<(String, String)>, AxisError> {
-    themed(study, Theme::Paper)
+    let named = themed(study, Theme::Paper)?.into_iter();
+    Ok(named.map(|(quantity, svg)| (format!("{}.svg", quantity.word()), svg)).collect())
 }
 
-/// The figures in the colours of files or of pages.
-pub(super) fn themed(study: &Tradeoff, theme: Theme) -> Result<Vec<(String, String)>, AxisError> {
+/// The figures in the colours of files or of pages; a page has a legend of its own, which is as
+/// large as its text at any width.
+pub(super) fn themed(study: &Tradeoff, theme: Theme) -> Result<Vec<(Quantity, String)>, AxisError> {
     let shown = Quantity::ALL.into_iter().map(|quantity| (quantity, points(study, quantity)));
     let figure = |(quantity, points): (Quantity, Vec<Point>)| {
-        Ok((format!("{}.svg", quantity.word()), figure(study, quantity, &points)?.theme(theme).to_svg()))
+        Ok((quantity, figure(study, quantity, &points, theme == Theme::Paper)?.theme(theme).to_svg()))
     };
     shown.filter(|(_, points)| !points.is_empty()).map(figure).collect()
 }
 
+/// The names of the schemes, in the order of their colours and marks.
+pub(super) fn schemes(study: &Tradeoff) -> Vec<&str> {
+    let axis = &study.axes.scheme;
+    axis.options
+        .iter()
+        .map(|option| axis.keys.first().and_then(|key| option.get(key)).unwrap_or(study.scheme.as_str()))
+        .collect()
+}
+
 fn points(study: &Tradeoff, quantity: Quantity) -> Vec<Point> {
     let axes = &study.axes;
-    let point = |row: &crate::Row| {
+    let point = |(number, row): (usize, &crate::Row)| {
         let error = row.result.as_ref().ok()?.errors.of(quantity).filter(|error| error.is_finite())?;
         let scheme = axes.scheme.part_of(&row.setting);
         Some(Point {
@@ -53,12 +66,28 @@ fn points(study: &Tradeoff, quantity: Quantity) -> Vec<Point> {
             error: error.max(LEAST),
             scheme: axes.scheme.options.iter().position(|option| *option == scheme)?,
             plain: axes.grid.iter().chain(&axes.others).all(|axis| axis.part_of(&row.setting).is_none()),
+            row: number,
         })
     };
-    study.rows.iter().filter_map(point).collect()
+    study.rows.iter().enumerate().filter_map(point).collect()
 }
 
-fn figure(study: &Tradeoff, quantity: Quantity, points: &[Point]) -> Result<Figure, AxisError> {
+/// The points that are advised, each with the accuracies it is advised for.
+fn advised(study: &Tradeoff, points: &[Point]) -> Vec<(f64, f64, String)> {
+    let targets_of = |row: usize| {
+        let takes = |advice: &Advice| matches!(advice, Advice::Take { row: taken, .. } if *taken == row);
+        let targets = TARGETS.iter().zip(&study.advice).filter(|(_, advice)| takes(advice));
+        targets.map(|(target, _)| percent(*target)).collect::<Vec<_>>()
+    };
+    let label = |point: &Point| {
+        let targets = targets_of(point.row);
+        (!targets.is_empty()).then(|| (1e3 * point.time, point.error, format!("for {}", targets.join(", "))))
+    };
+    points.iter().filter_map(label).collect()
+}
+
+fn figure(study: &Tradeoff, quantity: Quantity, points: &[Point], has_legend: bool) -> Result<Figure, AxisError> {
+    let named = |text: &str| if has_legend { text.to_owned() } else { String::new() };
     let ms = |point: &Point| 1e3 * point.time;
     let bar = Some(study.reference.bar_of(quantity)).filter(|bar| *bar > 0.0);
     let x = Axis::logarithmic("CPU time of the run (ms)", points.iter().map(ms))?;
@@ -69,22 +98,20 @@ fn figure(study: &Tradeoff, quantity: Quantity, points: &[Point]) -> Result<Figu
     // The smallest error achievable within each time.
     let all: Vec<(f64, f64)> = points.iter().map(|point| (ms(point), point.error)).collect();
     let steps = pareto_front(&all).into_iter().map(|k| all[k]);
-    let mut series = vec![Series::staircase("least error within the time", steps, x.ends().1).number(BLACK)];
-    let axis = &study.axes.scheme;
-    for (number, option) in axis.options.iter().enumerate() {
-        let name = axis.keys.first().and_then(|key| option.get(key)).unwrap_or(study.scheme.as_str());
+    let mut series = vec![Series::staircase(named("least error within the time"), steps, x.ends().1).number(BLACK)];
+    for (number, name) in schemes(study).into_iter().enumerate() {
         let of = |plain: bool| {
             let ours = points.iter().filter(move |point| point.scheme == number && point.plain == plain);
             ours.map(move |point| (ms(point), point.error))
         };
         let mark = Mark::of(number);
-        series.push(Series::marks(name, of(true), mark).number(number));
+        series.push(Series::marks(named(name), of(true), mark).number(number));
         series.push(Series::marks("", of(false), mark).number(number).hollow());
     }
-    series.push(Series::marks("hollow: other keys changed too", [], Mark::Circle).number(BLACK).hollow());
-    let mut panel = Panel::new(y).with(series).height_mm(HEIGHT);
+    series.push(Series::marks(named("hollow: other keys changed too"), [], Mark::Circle).number(BLACK).hollow());
+    let mut panel = Panel::new(y).with(series).labels(advised(study, points)).height_mm(HEIGHT);
     if let Some(bar) = bar {
-        panel = panel.shaded_below(bar, format!("the reference is known to {}", short(bar)));
+        panel = panel.shaded_below(bar, named(&format!("the reference is known to {}", short(bar))));
     }
     let title = format!("{}: error over CPU time", quantity.title());
     Ok(Figure::new(quantity.word(), title, x).legend(Legend::Rows).panel(panel))

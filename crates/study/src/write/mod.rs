@@ -2,6 +2,7 @@
 
 mod csv;
 mod figure;
+mod front;
 mod json;
 mod page;
 mod sentences;
@@ -41,7 +42,23 @@ pub(crate) fn short(x: f64) -> String {
 
 /// A fraction as a percentage with two significant digits.
 pub(crate) fn percent(x: f64) -> String {
-    format!("{} %", short(100.0 * x))
+    format!("{} %", power(100.0 * x))
+}
+
+/// A number with two significant digits, for sentences: `5.3 × 10⁻⁵`.
+pub(crate) fn power(x: f64) -> String {
+    let text = short(x);
+    let Some((digits, exponent)) = text.split_once('e') else { return text };
+    let raised = exponent.chars().map(|c| match c {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        // U+2070 and U+2074 to U+2079.
+        digit => digit.to_digit(10).and_then(|digit| char::from_u32(0x2070 + digit)).unwrap_or(digit),
+    });
+    let times = if digits == "1" { String::new() } else { format!("{digits} × ") };
+    format!("{times}10{}", raised.collect::<String>())
 }
 
 /// A time with two significant digits and a suitable unit.
@@ -62,6 +79,10 @@ mod tests {
             ("0.0012".into(), "2".into(), "3e-7".into(), "0".into())
         );
         assert_eq!((percent(1e-4), percent(0.1)), ("0.01 %".into(), "10 %".into()));
+        assert_eq!(
+            (percent(5.3e-7), power(1e-12), power(4e20)),
+            ("5.3 × 10⁻⁵ %".into(), "10⁻¹²".into(), "4 × 10²⁰".into())
+        );
         assert_eq!(
             (duration(0.004_21), duration(2.0), duration(1.3e-5)),
             ("4.2 ms".into(), "2 s".into(), "13 µs".into())

@@ -1,72 +1,63 @@
 //! `tradeoff.html`: a self-contained page in the style of a run's report.
 
-use super::figure::themed;
-use super::{advice, duration, findings, percent, pruning, short};
-use crate::{Quantity, Tradeoff};
+use super::front;
+use super::sentences::{NOTHING_MOVES, advised, command};
+use super::{duration, findings, percent, pruning, short};
+use crate::{Quantity, Row, Tradeoff};
 use std::fmt::Write;
-use teeter_plot::{AxisError, Theme, escaped};
+use teeter_plot::{AxisError, escaped};
 use teeter_report::STYLE;
 
 const OWN_STYLE: &str = "\
-main { display: block; }\nmain > section { margin-top: 1.5rem; }\n\
-#front { display: grid; grid-template-columns: repeat(auto-fit, minmax(20rem, 1fr)); gap: 1rem; }\n\
-#front svg { display: block; width: 100%; height: auto; max-width: 40rem; margin: 0 auto; }\n\
-#advice li { margin: .3rem 0; overflow-wrap: anywhere; }\ncode { font-size: .9em; }\n\
-tbody tr.on { background: var(--soft); font-weight: 600; }\n\
-td:first-child, td:last-child { text-align: left; }\n";
+main { display: block; }\nmain > section { margin-top: 1.75rem; }\nh2 { font-size: 1.15rem; }\n\
+.advised { margin-top: .9rem; }\n.advised p { margin-top: .25rem; max-width: 60rem; overflow-wrap: anywhere; }\n\
+code { font-size: .9em; overflow-wrap: anywhere; white-space: pre-wrap; }\n\
+.command { background: var(--soft); border-radius: 5px; padding: .3rem .6rem; }\n\
+li { margin: .3rem 0; overflow-wrap: anywhere; }\n\
+td:first-child { text-align: left; }\n\
+tbody th.setting { text-align: left; white-space: normal; padding-top: .6rem; }\n\
+th.setting > div { position: sticky; left: 0; width: min(100%, calc(100vw - 2.5rem)); }\n\
+tbody.on th.setting, tbody.on td { font-weight: 600; }\n\
+th.setting small { font-weight: 400; }\n\
+@media print { .panel { break-inside: auto; } figure { max-width: 15cm; } th.setting > div { width: auto; } table { font-size: 7pt; } th, td { padding-right: .3rem; } }\n";
 
-/// The page.
+/// The page. `scene` are the words that name the scene after `teeter run`, for the commands that
+/// run its settings.
 ///
 /// # Errors
 /// As [`figures`](super::figures).
-pub fn page(study: &Tradeoff) -> Result<String, AxisError> {
+pub fn page(study: &Tradeoff, scene: &[&str]) -> Result<String, AxisError> {
     let title = escaped(&format!("Speed against accuracy: {}", study.title));
     let mut html = format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"color-scheme\" content=\"light dark\">\n\
          <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}{OWN_STYLE}</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n\
-         <p id=\"subtitle\">{} candidates · t = {} s · teeter {}</p>\n</header>\n<main>\n",
+         <title>{title}</title>\n<style>\n{STYLE}{OWN_STYLE}{}</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n\
+         <p id=\"subtitle\">{} settings tried · t = {} s · teeter {}</p>\n</header>\n<main>\n",
+        front::STYLE,
         study.rows.len(),
         study.end,
         env!("CARGO_PKG_VERSION")
     );
-    html.push_str("<section id=\"advice\" class=\"panel\"><h3>Advice</h3>\n<ul>\n");
-    for sentence in advice(study) {
-        let _ = writeln!(html, "<li>{}</li>", with_code(&sentence));
-    }
-    html.push_str(
-        "</ul></section>\n<section id=\"findings\" class=\"panel\"><h3>How the numbers are obtained</h3>\n<ul>\n",
-    );
-    for sentence in findings(study) {
-        let _ = writeln!(html, "<li>{}</li>", with_code(&sentence));
-    }
-    html.push_str(
-        "</ul></section>\n<section class=\"panel\"><h3>Error over CPU time</h3>\n<p class=\"note\">A point is a candidate with a measured time, the line the smallest error within a time; grey: \
-         below what the reference is known to.</p>\n<div id=\"front\">\n",
-    );
-    for (_, svg) in themed(study, Theme::Page)? {
-        html.push_str(&svg);
-    }
-    html.push_str("</div></section>\n");
-    checks(&mut html, study);
-    candidates(&mut html, study);
-    html.push_str("<section class=\"panel\"><h3>The errors and their norms</h3>\n<dl>\n");
-    for quantity in Quantity::ALL {
-        let _ = writeln!(html, "<dt>{}</dt><dd>{}</dd>", quantity.title(), escaped(quantity.norm()));
-    }
-    html.push_str("</dl></section>\n<section class=\"panel\"><h3>Settings tried</h3>\n<ul>\n");
-    for sentence in pruning(study) {
-        let _ = writeln!(html, "<li>{}</li>", escaped(&sentence));
+    let page = Page { study, scene };
+    page.advice(&mut html);
+    front::section(&mut html, study)?;
+    page.pareto_front(&mut html);
+    html.push_str("<section id=\"findings\" class=\"panel\" aria-labelledby=\"findings-title\"><h2 id=\"findings-title\">How the numbers are obtained</h2>\n<ul>\n");
+    for sentence in findings(study).iter().chain(&pruning(study)) {
+        let _ = writeln!(html, "<li>{}</li>", with_code(sentence));
     }
     let _ = writeln!(
         html,
         "</ul>\n<p class=\"note\">Motions are compared every {} s; where a step doesn’t end there, by the cubic through positions and velocities \
          at its ends. CPU time is that of the steps on one thread, output off, the median of runs in turns. What is tried and advised goes by \
-         counted work, so that it is the same in every run.</p></section>\n</main>\n</body>\n</html>",
+         counted work, so that it is the same in every run.</p></section>",
         study.sampling.every
     );
+    page.candidates(&mut html);
+    page.checks(&mut html);
+    html.push_str("</main>\n</body>\n</html>\n");
     Ok(html)
 }
 
@@ -80,13 +71,138 @@ fn with_code(sentence: &str) -> String {
     html
 }
 
-fn header(html: &mut String, first: &[&str], last: &[&str]) {
+/// A sentence begins with a capital.
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// What the parts of the page need.
+struct Page<'a> {
+    study: &'a Tradeoff,
+    scene: &'a [&'a str],
+}
+
+impl Page<'_> {
+    fn command(&self, row: &Row) -> String {
+        escaped(&command(self.study, self.scene, &row.setting))
+    }
+
+    fn advice(&self, html: &mut String) {
+        html.push_str("<section id=\"advice\" class=\"panel\" aria-labelledby=\"advice-title\"><h2 id=\"advice-title\">Advice</h2>\n");
+        if self.study.best().is_none() {
+            let _ = writeln!(html, "<p>{}.</p></section>", capitalised(NOTHING_MOVES));
+            return;
+        }
+        for advised in advised(self.study) {
+            let _ = writeln!(html, "<div class=\"advised\"><h3>{}</h3>", escaped(&capitalised(&advised.target)));
+            if let Some(row) = advised.row {
+                let _ = writeln!(html, "<p class=\"command\"><code>{}</code></p>", self.command(row));
+            }
+            let _ = writeln!(html, "<p>{}</p></div>", with_code(&capitalised(&advised.text)));
+        }
+        html.push_str("</section>\n");
+    }
+
+    /// The points of the Pareto front, and how to run each.
+    fn pareto_front(&self, html: &mut String) {
+        if self.study.front.is_empty() {
+            return;
+        }
+        html.push_str(
+            "<section id=\"pareto\" class=\"panel\" aria-labelledby=\"pareto-title\"><h2 id=\"pareto-title\">The Pareto front, and what to run for each of its points</h2>\n\
+             <p class=\"note\">Settings that none tried beats in both accuracy and counted work; cheapest first.</p>\n<ol>\n",
+        );
+        for &number in &self.study.front {
+            let row = &self.study.rows[number];
+            let time = row.measured().or(row.modelled()).map_or_else(String::new, duration);
+            let kind = if row.measured().is_some() { "of CPU time" } else { "by counted work" };
+            let accuracy = row.accuracy().map_or_else(String::new, |error| format!("{} off, ", percent(error)));
+            let warned = if row.warned().is_empty() { "" } else { ", warned of" };
+            let _ = writeln!(html, "<li>{accuracy}{time} {kind}{warned}: <code>{}</code></li>", self.command(row));
+        }
+        html.push_str("</ol></section>\n");
+    }
+
+    fn checks(&self, html: &mut String) {
+        html.push_str(
+            "<section id=\"checks\" class=\"panel\" aria-labelledby=\"checks-title\"><details><summary id=\"checks-title\">Accuracy of the reference</summary>\n\
+             <div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"checks-title\"><table>\n",
+        );
+        let columns = header(html, &["Agrees until"], &[]);
+        for check in &self.study.reference.checks {
+            let _ = write!(
+                html,
+                "<tbody><tr><th scope=\"rowgroup\" colspan=\"{columns}\" class=\"setting\"><div>{}: <code>{}</code></div></th></tr>\n<tr><td>{} s</td>",
+                escaped(&capitalised(check.what)),
+                escaped(&check.setting.to_string()),
+                short(check.agrees_until)
+            );
+            errors(html, &check.errors);
+            html.push_str("</tr></tbody>\n");
+        }
+        html.push_str("</table></div></details></section>\n");
+    }
+
+    fn candidates(&self, html: &mut String) {
+        let study = self.study;
+        let _ = write!(
+            html,
+            "<section id=\"candidates\" class=\"panel\" aria-labelledby=\"candidates-title\"><details><summary id=\"candidates-title\">All settings, with all errors</summary>\n\
+             <p class=\"note\">Bold: on the Pareto front. Of the later stages, those that were near it; tradeoff.csv has all. A setting that \
+             <code>check</code> or <code>run</code> warns of is not advised. Accuracies below {} can’t be measured.</p>\n\
+             <div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"candidates-title\"><table>\n",
+            percent(study.bar())
+        );
+        let columns = header(html, &["Stage"], &["CPU time", "By counted work"]);
+        // Only the informative ones of hundreds; the table in the file has all.
+        let shown = |number: usize, row: &Row| {
+            row.stage <= 2 || row.cpu.is_some() || row.result.is_err() || study.front.contains(&number)
+        };
+        for (number, row) in study.rows.iter().enumerate().filter(|(number, row)| shown(*number, row)) {
+            let class = if study.front.contains(&number) { " class=\"on\"" } else { "" };
+            let warned = row.warned().iter().map(|warned| format!("<br>warned: {}", escaped(&warned.text)));
+            let _ = write!(
+                html,
+                "<tbody{class}><tr><th scope=\"rowgroup\" colspan=\"{columns}\" class=\"setting\"><div><code>{}</code><small>{}</small></div></th></tr>\n<tr><td>{}</td>",
+                self.command(row),
+                warned.collect::<String>(),
+                row.stage
+            );
+            match &row.result {
+                Ok(done) => {
+                    errors(html, &done.errors);
+                    let _ = write!(
+                        html,
+                        "<td>{}</td><td>{}</td>",
+                        row.measured().map_or("–".to_owned(), duration),
+                        duration(done.work.seconds())
+                    );
+                }
+                Err(failure) => {
+                    let _ = write!(
+                        html,
+                        "<td colspan=\"{}\" class=\"bad\">{}</td>",
+                        columns - 1,
+                        escaped(&failure.to_string())
+                    );
+                }
+            }
+            html.push_str("</tr></tbody>\n");
+        }
+        html.push_str("</table></div></details></section>\n");
+    }
+}
+
+/// The head of a table of errors; returns its number of columns.
+fn header(html: &mut String, first: &[&str], last: &[&str]) -> usize {
     html.push_str("<thead><tr>");
     let cells = first.iter().copied().chain(Quantity::ALL.map(Quantity::title)).chain(last.iter().copied());
     for cell in cells {
         let _ = write!(html, "<th scope=\"col\">{cell}</th>");
     }
-    html.push_str("</tr></thead>\n<tbody>\n");
+    html.push_str("</tr></thead>\n");
+    first.len() + Quantity::ALL.len() + last.len()
 }
 
 fn errors(html: &mut String, errors: &crate::Errors) {
@@ -94,62 +210,4 @@ fn errors(html: &mut String, errors: &crate::Errors) {
         let text = errors.of(quantity).map_or("–".to_owned(), short);
         let _ = write!(html, "<td>{}</td>", text.replace('-', "\u{2212}"));
     }
-}
-
-fn checks(html: &mut String, study: &Tradeoff) {
-    html.push_str(
-        "<section id=\"checks\" class=\"panel\"><h3>Accuracy of the reference</h3>\n<div class=\"scroll\" tabindex=\"0\"><table>\n",
-    );
-    header(html, &["ReferenceComparison the reference", "agrees until"], &["Setting"]);
-    for check in &study.reference.checks {
-        let _ = write!(html, "<tr><td>{}</td><td>{} s</td>", escaped(check.what), short(check.agrees_until));
-        errors(html, &check.errors);
-        let _ = writeln!(html, "<td><code>{}</code></td></tr>", escaped(&check.setting.to_string()));
-    }
-    html.push_str("</tbody></table></div></section>\n");
-}
-
-fn candidates(html: &mut String, study: &Tradeoff) {
-    html.push_str(
-        "<section id=\"candidates\" class=\"panel\"><h3>The candidates</h3>\n<p class=\"note\">Bold: on the Pareto front of accuracy over counted work. Of the later stages, those that \
-         were near the front; tradeoff.csv has all. A setting that `check` or `run` \
-         warns of is not advised.</p>\n\
-         <div class=\"scroll\" tabindex=\"0\"><table>\n",
-    );
-    header(html, &["Stage"], &["CPU time", "by counted work", "Setting"]);
-    // Only the informative ones of hundreds; the table in the file has all.
-    let shown = |number: usize, row: &crate::Row| {
-        row.stage <= 2 || row.cpu.is_some() || row.result.is_err() || study.front.contains(&number)
-    };
-    for (number, row) in study.rows.iter().enumerate().filter(|(number, row)| shown(*number, row)) {
-        let class = if study.front.contains(&number) { " class=\"on\"" } else { "" };
-        let _ = write!(html, "<tr{class}><td>{}</td>", row.stage);
-        let setting =
-            if row.setting.is_none() { "the unchanged scene".to_owned() } else { escaped(&row.setting.to_string()) };
-        match &row.result {
-            Ok(done) => {
-                errors(html, &done.errors);
-                let _ = write!(
-                    html,
-                    "<td>{}</td><td>{}</td>",
-                    row.measured().map_or("–".to_owned(), duration),
-                    duration(done.work.seconds())
-                );
-            }
-            Err(failure) => {
-                let columns = Quantity::ALL.len() + 2;
-                let _ = write!(html, "<td colspan=\"{columns}\" class=\"bad\">{}</td>", escaped(&failure.to_string()));
-            }
-        }
-        let warned = row
-            .warned()
-            .iter()
-            .map(|warned| format!("<br><span class=\"bad\">warned: {}</span>", escaped(&warned.text)));
-        let _ = writeln!(html, "<td><code>{setting}</code>{}</td></tr>", warned.collect::<String>());
-    }
-    let _ = writeln!(
-        html,
-        "</tbody></table></div><p class=\"note\">Accuracies below {} can't be measured.</p></section>",
-        percent(study.bar())
-    );
 }

@@ -1,32 +1,61 @@
 //! The results of a study in sentences.
 
-use super::{duration, percent, short};
-use crate::setting::as_arguments;
-use crate::{Advice, PERTURBATION, Quantity, Row, SEARCH_STAGES, TARGETS, Tradeoff};
+use super::{duration, percent, power, short};
+use crate::setting::{as_arguments, as_word};
+use crate::{Advice, PERTURBATION, Quantity, Row, SEARCH_STAGES, Setting, TARGETS, Tradeoff};
+
+/// The advice for an accuracy, for users.
+pub(super) struct Advised<'a> {
+    /// Such as "within 10 % over the whole 1 s".
+    pub(super) target: String,
+    /// The setting to take, if there is one.
+    pub(super) row: Option<&'a Row>,
+    /// What it costs and reaches, or why there is none.
+    pub(super) text: String,
+}
 
 /// A sentence for each accuracy: the advised setting, as arguments to copy, or why there is none.
 #[must_use]
 pub fn advice(study: &Tradeoff) -> Vec<String> {
+    let sentence = |Advised { target, row, text }: Advised<'_>| match row {
+        Some(row) => format!("to be {target} use {}: {text}", taken(study, row)),
+        None => format!("{target}: {text}"),
+    };
+    if study.best().is_none() {
+        return vec![NOTHING_MOVES.to_owned()];
+    }
+    advised(study).into_iter().map(sentence).collect()
+}
+
+/// What is said instead of advice where nothing moves.
+pub(super) const NOTHING_MOVES: &str = "nothing moves before the horizon, so there is nothing to choose";
+
+/// The advice in parts, one for each accuracy.
+pub(super) fn advised(study: &Tradeoff) -> Vec<Advised<'_>> {
     let until = until(study);
+    let warnings = |row: &Row| row.warned().iter().map(|warned| warned.text.clone()).collect::<Vec<_>>();
     let one = |(target, advice): (&f64, &Advice)| {
-        let target = format!("{} of accuracy {until}", percent(*target));
-        match advice {
+        let target = format!("within {} {until}", percent(*target));
+        let (row, text) = match advice {
             Advice::NotMeasurable => {
-                format!("{target}: not measurable: the reference has an error bar of {}", percent(study.bar()))
+                (None, format!("not measurable: the reference has an error bar of {}", percent(study.bar())))
             }
-            Advice::NotReached => format!(
-                "{target}: none of the settings tried is known to reach it: the best is off by at most {}",
-                off_by(study, study.best().unwrap_or(f64::INFINITY))
+            Advice::NotReached => (
+                None,
+                format!(
+                    "none of the settings tried is known to reach it: the best is off by at most {}",
+                    off_by(study, study.best().unwrap_or(f64::INFINITY))
+                ),
             ),
-            Advice::BeforeImpact => format!("{target}: nothing is advised: {}", before_impact(study)),
+            Advice::BeforeImpact => (None, format!("nothing is advised: {}", before_impact(study))),
             Advice::Warned(row) => {
                 let row = &study.rows[*row];
-                format!(
-                    "{target}: nothing is advised: `check` or `run` warns of every setting tried that is known to reach it; of the cheapest, {}, \
-                     that {}",
+                let text = format!(
+                    "nothing is advised: `check` or `run` warns of every setting tried that is known to reach it; of the cheapest, {}, that {}",
                     taken(study, row),
-                    row.warned().iter().map(|warned| warned.text.as_str()).collect::<Vec<_>>().join("; and that ")
-                )
+                    warnings(row).join("; and that ")
+                );
+                (None, text)
             }
             Advice::Take { row, faster, confirmed } => {
                 let row = &study.rows[*row];
@@ -40,18 +69,15 @@ pub fn advice(study: &Tradeoff) -> Vec<String> {
                 });
                 let warned = match row.warned() {
                     [] => String::new(),
-                    warned => format!(
-                        "; with any setting `check` or `run` warns of the scene: {}",
-                        warned.iter().map(|warned| warned.text.as_str()).collect::<Vec<_>>().join("; ")
-                    ),
+                    _ => {
+                        format!("; with any setting `check` or `run` warns of the scene: {}", warnings(row).join("; "))
+                    }
                 };
-                format!("for {target} use {}: {}{faster}{unconfirmed}{warned}", taken(study, row), cost(study, row))
+                (Some(row), format!("{}{faster}{unconfirmed}{warned}", cost(study, row)))
             }
-        }
+        };
+        Advised { target, row, text }
     };
-    if study.best().is_none() {
-        return vec!["nothing moves before the horizon, so there is nothing to choose".to_owned()];
-    }
     TARGETS.iter().zip(&study.advice).map(one).collect()
 }
 
@@ -101,9 +127,27 @@ fn cost(study: &Tradeoff, row: &Row) -> String {
     let accuracy =
         row.accuracy().map_or_else(String::new, |accuracy| format!(" (off by at most {})", off_by(study, accuracy)));
     match row.measured() {
-        Some(time) => format!("{} of CPU time, {:.2e} × real time{accuracy}", duration(time), time / study.end),
+        Some(time) => format!("{} of CPU time, {}{accuracy}", duration(time), of_real_time(time / study.end)),
         None => format!("no time measured{accuracy}"),
     }
+}
+
+/// A time as a part or multiple of the time simulated.
+fn of_real_time(ratio: f64) -> String {
+    if ratio < 1.0 && ratio > 0.0 {
+        format!("1/{} of real time", short(1.0 / ratio))
+    } else {
+        format!("{} × real time", short(ratio))
+    }
+}
+
+/// The command that runs the scene with a setting: the words that name the scene, the user's own
+/// settings, and those of the setting.
+pub(super) fn command(study: &Tradeoff, scene: &[&str], setting: &Setting) -> String {
+    let own: Vec<_> = study.sets.iter().filter(|(key, _)| setting.get(key).is_none()).cloned().collect();
+    let words = scene.iter().copied().map(as_word);
+    let settings = [as_arguments(&own), setting.to_string()].into_iter().filter(|text| !text.is_empty());
+    ["teeter".to_owned(), "run".to_owned()].into_iter().chain(words).chain(settings).collect::<Vec<_>>().join(" ")
 }
 
 /// How the advice was obtained: horizon, error bars, the unchanged scene.
@@ -111,18 +155,23 @@ fn cost(study: &Tradeoff, row: &Row) -> String {
 pub fn findings(study: &Tradeoff) -> Vec<String> {
     let reference = &study.reference;
     let norms = &reference.norms;
-    let mut texts = vec![format!("reference: {}", reference.setting)];
+    let mut texts = vec![match reference.setting.is_none() {
+        true => "reference: the unchanged scene".to_owned(),
+        false => format!("reference: `{}`", reference.setting),
+    }];
     texts.push(if reference.whole {
         format!(
-            "horizon: the whole run of {} s; perturbed by {PERTURBATION:e} or with twice the step, the reference stays within {} of the motion",
+            "horizon: the whole run of {} s; perturbed by {} or with twice the step, the reference stays within {} of the motion",
             study.end,
+            power(PERTURBATION),
             percent(reference.share)
         )
     } else {
         format!(
-            "horizon: {} s of {} s; beyond it the reference, perturbed by {PERTURBATION:e} or with twice the step, differs by more than {} of the motion, and nothing is compared",
+            "horizon: {} s of {} s; beyond it the reference, perturbed by {} or with twice the step, differs by more than {} of the motion, and nothing is compared",
             norms.horizon(),
             study.end,
+            power(PERTURBATION),
             percent(reference.share)
         )
     });

@@ -185,7 +185,7 @@ fn what_is_said_names_the_horizon_and_how_far_off_with_the_bar() {
         assert!((said / (100.0 * at_most) - 1.0).abs() < 0.06, "{sentence}: {at_most}");
         assert!(sentence.contains("over the whole 0.2 s"), "{sentence}");
     }
-    assert!(sentences[0].starts_with("for 10 %"), "{sentences:?}");
+    assert!(sentences[0].starts_with("to be within 10 %"), "{sentences:?}");
 }
 
 #[test]

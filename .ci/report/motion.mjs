@@ -1,0 +1,147 @@
+// What the page says of the motion, against the tables of the run.
+
+const largest = (rows, pick) => rows.reduce((most, row) => Math.max(most, Math.abs(pick(row))), 0);
+
+/** Bodies out of the picture, in every so many of the pictures that the slider leads to. Runs in the page. */
+export function outOfPicture(every) {
+  const slider = document.getElementById("time-slider");
+  const root = document.getElementById("scene");
+  const { width, height } = root.viewBox.baseVal;
+  // Beams and blocks; the ground has no end.
+  const bodies = [...root.querySelectorAll("[data-body]")].filter((one) => one.dataset.body !== "ground")
+    .flatMap((one) => [...one.querySelectorAll(".body, .beam")].map((shape) => [one.dataset.body, shape]));
+  const crowd = [...root.querySelectorAll(".crowd")].map((shape) => ["a body", shape]);
+  const found = [];
+  for (let frame = 0; frame <= Number(slider.max) && found.length < 5; frame += every) {
+    slider.value = frame;
+    slider.dispatchEvent(new Event("input"));
+    for (const [name, shape] of [...bodies, ...crowd]) {
+      const box = shape.getBBox();
+      if (box.width === 0 && box.height === 0) continue;
+      if (box.x < 0 || box.y < 0 || box.x + box.width > width || box.y + box.height > height) {
+        found.push(`${name} is out of the picture at ${document.getElementById("time-readout").textContent}`);
+      }
+    }
+  }
+  return found;
+}
+
+const gravity = 9.81;
+
+/**
+ * Where the verdict isn't what the rows of trajectory.csv say, by the rules of docs/verdict.md for gravity of 9.81 m/s²; `data` is that of
+ * the page, of which the shapes of the bodies are taken.
+ */
+export function wrongVerdicts(summary, trajectory, { scenery, frames }) {
+  const problems = [];
+  const [first, last] = [trajectory[0], trajectory[trajectory.length - 1]];
+  const still = frames.ground === null;
+  const turns = !still && frames.ground.slope.some((slope) => slope !== 0);
+  for (const verdict of summary.verdict) {
+    const { body } = verdict;
+    const block = scenery.blocks.find(({ name }) => name === body);
+    const at = (row, key) => row[`${body}.${key}`];
+    const say = (text) => problems.push(`${body} ${verdict.what}: ${text}`);
+    if (at(last, "phi") === undefined) {
+      say("there are no columns of it");
+      continue;
+    }
+    // On the level, a rectangle as drawn: what α means needs no more than its table.
+    const level = block.upright && block.alpha !== null && scenery.incline === 0 && !turns;
+    const beyond = (row) => Math.abs(at(row, "phi")) > block.alpha;
+    if (level) {
+      const share = largest(trajectory, (row) => at(row, "phi")) / block.alpha;
+      // The table may lack the row of the largest angle.
+      if (share > verdict.max_phi_over_alpha * (1 + 1e-9) + 1e-12) say(`rows reach ${share} α, it says ${verdict.max_phi_over_alpha}`);
+      if (share < 0.98 * verdict.max_phi_over_alpha - 1e-3) say(`rows reach only ${share} α, it says ${verdict.max_phi_over_alpha}`);
+    }
+    if (level && verdict.what === "overturned") {
+      if (!beyond(last)) say(`φ is within α at the end`);
+      const way = at(last, "phi") > 0 ? "left" : "right";
+      if (way !== verdict.way) say(`to the ${verdict.way}, but φ at the end is ${at(last, "phi")}`);
+      const within = trajectory.findLastIndex((row) => !beyond(row));
+      const [from, to] = [trajectory[within]?.t ?? first.t, trajectory[within + 1]?.t ?? last.t];
+      const step = summary.dt.max ?? summary.dt;
+      if (verdict.overturned_at < from - step || verdict.overturned_at > to + step) {
+        say(`at ${verdict.overturned_at}, but the rows pass α between ${from} and ${to}`);
+      }
+    } else if (level && beyond(last) && verdict.what !== "moves") {
+      say(`φ is beyond α at the end: ${at(last, "phi")}`);
+    }
+    // Relative to ground that stands still, and to a beam or block only where nothing moves at all.
+    const speed = (row) => Math.hypot(at(row, "vx"), at(row, "vy")) + block.reach * Math.abs(at(row, "omega"));
+    const bound = Math.sqrt(gravity * block.reach) / 1000;
+    if (still && verdict.rests_from !== null) {
+      const moving = trajectory.find((row) => row.t > verdict.rests_from + 1e-12 && speed(row) > 1.01 * bound);
+      if (moving && scenery.beams.length === 0 && !carried(scenery)) say(`rests from ${verdict.rests_from}, but moves at ${moving.t}`);
+      if (last.t - verdict.rests_from < Math.sqrt(block.reach / gravity) * 0.99) say(`rests only from ${verdict.rests_from}`);
+    }
+    if (still && verdict.what === "rocks") {
+      const window = trajectory.filter((row) => row.t >= last.t - 1.01 * Math.sqrt(block.reach / gravity));
+      if (scenery.beams.length === 0 && !carried(scenery) && window.every((row) => speed(row) < 0.99 * bound)) say("but it rests at the end");
+    }
+  }
+  return problems;
+}
+
+/** Whether blocks are prescribed, so that what stands on them rests in motion. */
+const carried = (scenery) => scenery.blocks.some(({ driven }) => driven);
+
+const factors = { k: 1e3, M: 1e6, G: 1e9, m: 1e-3, "µ": 1e-6, n: 1e-9, p: 1e-12 };
+/** SI value of a unit as written on the page, such as mm or kN m. */
+export function inSi(unit) {
+  const first = unit.split(" ")[0];
+  return first.length > 1 && factors[first[0]] && /^(m|N|J|Pa|s)$/.test(first.slice(1)) ? factors[first[0]] : 1;
+}
+
+/** Words of titles of plots for each quantity that a beam may record. */
+const titles = {
+  w: /deflection/i, moment: /moment/i, shear: /transverse|shear/i, stress: /stress/i,
+  axial_force: /axial/i, reaction: /reaction/i, reaction_couple: /couple/i,
+};
+
+/** The value of a column at a time, linear between the rows. */
+function valueAt(rows, name, t) {
+  const k = Math.max(1, rows.findIndex((row) => row.t >= t - 1e-12));
+  const [a, b] = [rows[k - 1], rows[k] ?? rows[k - 1]];
+  const part = b.t > a.t ? Math.min(1, Math.max(0, (t - a.t) / (b.t - a.t))) : 0;
+  return a[name] + part * (b[name] - a[name]);
+}
+
+/** Where in the run values are compared. */
+const looks = [0.13, 0.4, 0.7, 1];
+
+/** Columns of probes and supports that no plot shows: a plot of that quantity must have the column's values in its legend. */
+export async function unplotted(page, trajectory) {
+  const shown = [];
+  for (const part of looks) {
+    const [t, panels] = await page.evaluate((fraction) => {
+      const slider = document.getElementById("time-slider");
+      slider.value = Math.round(fraction * slider.max);
+      slider.dispatchEvent(new Event("input"));
+      return [Number(document.getElementById("time-readout").dataset.t), [...document.querySelectorAll("#plots .panel")].map((panel) => ({
+        title: panel.querySelector("h2, h3")?.textContent ?? "",
+        unit: panel.querySelector(".unit")?.textContent.replace(/[()]/g, "") ?? "",
+        values: [...panel.querySelectorAll(".key b")].map((value) => Number(value.textContent.replace(/−/g, "-"))),
+      }))];
+    }, part);
+    shown.push({ t, panels });
+  }
+  const missing = [];
+  for (const name of Object.keys(trajectory[0])) {
+    const [what, place] = name.split(".").pop().split("@");
+    if (!(what in titles) || place === undefined) continue;
+    const most = largest(trajectory, (row) => row[name]);
+    // Rounding isn't drawn.
+    if (!(most > 1e-9)) continue;
+    // One curve, the same at all times; how its points are thinned may move it by little.
+    const fits = (value, unit, t) => {
+      const wanted = valueAt(trajectory, name, t);
+      return Math.abs(value * inSi(unit) - wanted) <= 1e-2 * Math.abs(wanted) + 2e-3 * most;
+    };
+    const curves = shown[0].panels.flatMap(({ title, values }, panel) => (titles[what].test(title) ? values.map((_, curve) => [panel, curve]) : []));
+    const found = curves.some(([panel, curve]) => shown.every(({ t, panels }) => fits(panels[panel].values[curve], panels[panel].unit, t)));
+    if (!found) missing.push(`${name} is in no plot`);
+  }
+  return missing;
+}
