@@ -50,6 +50,7 @@ pub mod output_size;
 mod overlap;
 mod placement;
 pub mod preview;
+mod record_alone;
 mod record_checks;
 mod required;
 pub mod resolve;
@@ -72,6 +73,7 @@ pub use teeter_text::{diagnostic, dimension, document, measure, quantity, source
 pub use left_out::left_out;
 pub use meeting::{Meeting, Shapes};
 pub use opening::OPEN_GAP;
+pub use record_alone::record_alone;
 pub use placement::{InstabilityMode, PlacementError};
 pub use required::{Extent, Limits, Removed, Required};
 pub use resolve::matches_pattern;
