@@ -123,11 +123,13 @@ impl<'a> Held<'a> {
         let (record, numbers) = (self.record(), &self.numbers);
         let [a, v, d] = [record.acceleration_peak(), record.velocity_peak(), record.displacement_peak()];
         let [velocity, displacement] = self.left_over();
-        let mut lines = vec![[self.name, &numbers.station, &numbers.description]
-            .into_iter()
-            .filter(|part| !part.is_empty())
-            .collect::<Vec<_>>()
-            .join(", ")];
+        let mut lines = vec![
+            [self.name, &numbers.station, &numbers.description]
+                .into_iter()
+                .filter(|part| !part.is_empty())
+                .collect::<Vec<_>>()
+                .join(", "),
+        ];
         let mut row = |name: &str, text: String| lines.push(format!("  {name:<22}{text}"));
         row("values", format!("{}, every {} s, over {:.6} s", record.len(), record.dt(), record.duration()));
         if !self.keys.is_empty() {

@@ -199,7 +199,8 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
         console.note(&format!("{unsolved} {have} steps that were not solved to tolerance: see `unsolved_steps`"));
     }
     if windows > 0 {
-        let text = format!("in {windows} of {total} cases there are several limits: the lowest one seen is in the table");
+        let text =
+            format!("in {windows} of {total} cases there are several limits: the lowest one seen is in the table");
         console.note(&format!("{text}, their number in `find.changes`"));
     } else if study.sweep.bisects_blindly() && total > incomplete {
         console.note("a bisection sees one limit of several: `scan` under [find] also runs values in between");

@@ -349,10 +349,7 @@ mod tests {
     fn cells_of_a_row_are_one_rectangle_where_they_touch() {
         let points = [(1.0, 0.0), (2.0, 0.0), (4.0, 0.0), (1.0, 1.0), (f64::NAN, 1.0)];
         let path = cells_path(&points, [1.0, 1.0], |x| x, |y| -y);
-        assert_eq!(
-            path,
-            "M0.50 -0.50H2.50V0.50H0.50zM3.50 -0.50H4.50V0.50H3.50zM0.50 -1.50H1.50V-0.50H0.50z"
-        );
+        assert_eq!(path, "M0.50 -0.50H2.50V0.50H0.50zM3.50 -0.50H4.50V0.50H3.50zM0.50 -1.50H1.50V-0.50H0.50z");
     }
 
     #[test]

@@ -17,10 +17,16 @@ pub struct Series {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Drawn {
     Line,
-    Marks { mark: Mark, hollow: bool },
+    Marks {
+        mark: Mark,
+        hollow: bool,
+    },
     Area,
     /// Filled rectangles about the points, with these sides.
-    Cells { width: f64, height: f64 },
+    Cells {
+        width: f64,
+        height: f64,
+    },
 }
 
 /// The marker shape of a series.

@@ -30,11 +30,7 @@ const SCENE: &str = "[time]\nend = '1 s'\nstep = '1 ms'\n[world]\ngravity = '0 m
 ///
 /// # Errors
 /// What is wrong with the file or the keys; the path of a finding is that of its key alone.
-pub fn record_alone(
-    file: &str,
-    bytes: &[u8],
-    keys: &[(String, String)],
-) -> Result<Arc<RecordScene>, Diagnostics> {
+pub fn record_alone(file: &str, bytes: &[u8], keys: &[(String, String)]) -> Result<Arc<RecordScene>, Diagnostics> {
     let own = [(format!("{MOTION}.record"), "'record'".to_owned())];
     let sets: Vec<_> =
         own.into_iter().chain(keys.iter().map(|(key, value)| (format!("{MOTION}.{key}"), value.clone()))).collect();
@@ -53,8 +49,7 @@ pub fn record_alone(
         }
         found
     };
-    let resolved =
-        crate::load_with(SCENE.as_bytes(), file, "record", &sets, read.as_mut()).map_err(about_record)?;
+    let resolved = crate::load_with(SCENE.as_bytes(), file, "record", &sets, read.as_mut()).map_err(about_record)?;
     let record = resolved.scene.records().next().cloned();
     record.ok_or_else(|| crate::diagnostic::Diagnostic::error(file, "holds no record").into())
 }

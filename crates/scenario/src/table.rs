@@ -408,6 +408,7 @@ pub static TABLES: &[TableSchema] = &[
             key("period", TIME, Optional, "\"0.5 s\"", "Duration of a cycle, instead of the frequency.").only_with("shape", OSCILLATING),
             key("phase", ANGLE, Default("\"0 deg\""), "\"20 deg\"", "Argument of the sine at the start.").only_with("shape", &["harmonic", "one-sine"]),
             key("file", Kind::Path, Required, "\"quake.csv\"", "File of two columns, time in s and value; relative to the scene's file.").only_with("shape", &["table"]),
+            key("scale", Kind::Number(Range::ANY), Optional, "1.2", "Factor of the signal, 1 if left out: it multiplies all amplitudes that the signal does."),
         ],
     },
     TableSchema {

@@ -36,7 +36,9 @@ pub enum NoFit {
     #[error("{0}")]
     OneSided(&'static str),
     /// The event came at all intensities above and at none below: β would be 0.
-    #[error("the event comes at no intensity below {below:.4e} and at all above {above:.4e}: the median is between them, and the dispersion can't be told")]
+    #[error(
+        "the event comes at no intensity below {below:.4e} and at all above {above:.4e}: the median is between them, and the dispersion can't be told"
+    )]
     Separated {
         /// The largest intensity without it.
         below: f64,
@@ -175,7 +177,8 @@ mod tests {
     #[test]
     fn the_fit_is_that_of_another_optimiser() {
         // scipy.optimize.minimize (Nelder–Mead, then BFGS with gtol = 1e-12) on the same likelihood.
-        let rows = [(0.1, 40, 0), (0.2, 40, 2), (0.3, 40, 9), (0.4, 40, 15), (0.5, 40, 24), (0.7, 40, 33), (1.0, 40, 39)];
+        let rows =
+            [(0.1, 40, 0), (0.2, 40, 2), (0.3, 40, 9), (0.4, 40, 15), (0.5, 40, 24), (0.7, 40, 33), (1.0, 40, 39)];
         let fit = LognormalFit::of(&stripes(&rows)).unwrap();
         assert!((fit.median - STRIPES[0]).abs() < 1e-8, "{fit:?}");
         assert!((fit.beta - STRIPES[1]).abs() < 1e-8, "{fit:?}");

@@ -40,7 +40,10 @@ impl CaseStatus {
     /// Whether the case ran to its end.
     #[must_use]
     pub fn is_complete(self) -> bool {
-        !matches!(self, Self::Refused | Self::Failed | Self::NoLimit | Self::Ran(EndedWord::Diverged | EndedWord::Unconverged))
+        !matches!(
+            self,
+            Self::Refused | Self::Failed | Self::NoLimit | Self::Ran(EndedWord::Diverged | EndedWord::Unconverged)
+        )
     }
 }
 
@@ -120,27 +123,30 @@ fn run_case(sweep: &Sweep, source: &StudyScene, number: u64, cancel: &Arc<Atomic
     let decides = sweep.outputs().iter().position(|output| Some(output.name()) == column);
     let mut unsolved_steps = 0;
     let searched = find.search(|value| {
-        let Some(row) = run_once(sweep, source, number, Some(&value), cancel) else { return Err(None) };
+        let Some(row) = run_once(sweep, source, number, Some(&value), cancel).map(Box::new) else { return Err(None) };
         unsolved_steps += row.unsolved_steps;
-        let at = |why: &str| CaseRow { error: format!("at {value}: {why}"), ..row.clone() };
+        let at = |why: &str| Box::new(CaseRow { error: format!("at {value}: {why}"), ..CaseRow::clone(&row) });
         if !row.status.is_complete() {
             return Err(Some(at(&row.error)));
         }
         let cell = decides.and_then(|place| row.outputs.get(place));
         match cell.and_then(|cell| find.until.holds(cell)) {
             Some(holds) => Ok((holds, Some(row))),
-            None => Err(Some(CaseRow { status: CaseStatus::Failed, ..at("the output that decides has no value") })),
+            None => {
+                let row = at("the output that decides has no value");
+                Err(Some(Box::new(CaseRow { status: CaseStatus::Failed, ..*row })))
+            }
         }
     });
     match searched {
         Ok((found, row)) => row.map(|row| {
             let (status, error) = match found.no_limit(find) {
                 Some(why) => (CaseStatus::NoLimit, why),
-                None => (row.status, row.error),
+                None => (row.status, row.error.clone()),
             };
-            CaseRow { status, error, found: Some(found), unsolved_steps, ..row }
+            CaseRow { status, error, found: Some(found), unsolved_steps, ..*row }
         }),
-        Err(row) => row.map(|row| CaseRow { outputs: vec![String::new(); row.outputs.len()], unsolved_steps, ..row }),
+        Err(row) => row.map(|row| CaseRow { outputs: vec![String::new(); row.outputs.len()], unsolved_steps, ..*row }),
     }
 }
 

@@ -21,8 +21,7 @@ pub(crate) enum Criterion {
 }
 
 const WORDS: [&str; 2] = ["output", "above"];
-const EXAMPLE: &str =
-    "write \"overturned\", or the name of an output and a number in SI units, such as { output = \"largest\", above = 0.2 }";
+const EXAMPLE: &str = "write \"overturned\", or the name of an output and a number in SI units, such as { output = \"largest\", above = 0.2 }";
 
 impl Criterion {
     /// Reads `"overturned"` or `{ output = "largest", above = 0.2 }`.
@@ -38,7 +37,9 @@ impl Criterion {
         for (word, value) in entries(table) {
             match word {
                 "output" => output = value.text().map(str::to_owned),
-                "above" => above = reader.written(&value).replace('_', "").parse::<f64>().ok().filter(|x| x.is_finite()),
+                "above" => {
+                    above = reader.written(&value).replace('_', "").parse::<f64>().ok().filter(|x| x.is_finite())
+                }
                 other => {
                     reader.unknown(&format!("{path}.{other}"), &value, other, &WORDS);
                     return None;

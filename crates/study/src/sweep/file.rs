@@ -92,7 +92,14 @@ impl Sweep {
                 return Err(finding.into());
             }
         };
-        let mut sweep = Self { scene: String::new(), axes: Vec::new(), samples: None, find: None, wanted: Wanted::default(), outputs: Vec::new() };
+        let mut sweep = Self {
+            scene: String::new(),
+            axes: Vec::new(),
+            samples: None,
+            find: None,
+            wanted: Wanted::default(),
+            outputs: Vec::new(),
+        };
         let tables = entries(root.get_ref());
         // Files are listed as the scene names them, wherever in the file it is named.
         let scene = tables.iter().find(|(name, _)| *name == "scene").and_then(|(_, node)| node.text());
@@ -316,8 +323,7 @@ impl Sweep {
         let keys = self.keys();
         let outputs = self.outputs.iter().map(Output::name);
         let found = self.find.iter().flat_map(|find| std::iter::once(find.key.as_str()).chain(find::COLUMNS));
-        let names =
-            std::iter::once("case").chain(keys.iter().copied()).chain(found).chain(outputs).chain(LAST_COLUMNS);
+        let names = std::iter::once("case").chain(keys.iter().copied()).chain(found).chain(outputs).chain(LAST_COLUMNS);
         names.map(super::output::quoted).collect::<Vec<_>>().join(",") + "\n"
     }
 }

@@ -67,7 +67,8 @@ impl Find {
                 }
             }
         }
-        let (Some(key), Some(low), Some(high), Some(tolerance), Some(until)) = (key, low, high, tolerance, until) else {
+        let (Some(key), Some(low), Some(high), Some(tolerance), Some(until)) = (key, low, high, tolerance, until)
+        else {
             reader.wrong("find", Some(node), "key, low, high, tolerance and until belong together", EXAMPLE);
             return None;
         };

@@ -290,7 +290,8 @@ pub fn ended_study(folder: &Path, name: &str) -> Result<Ensemble, JournalError> 
     let identity = SweepIdentity::from_json(&text).map_err(foreign)?;
     // The values are in the table; the files that a pattern once matched need not be here.
     let as_written = |_: &str, pattern: &str| Ok(vec![pattern.to_owned()]);
-    let sweep = Sweep::read(identity.sweep(), IDENTITY, &as_written).map_err(|_| foreign(SweepIdentityError::Unreadable))?;
+    let sweep =
+        Sweep::read(identity.sweep(), IDENTITY, &as_written).map_err(|_| foreign(SweepIdentityError::Unreadable))?;
     let path = folder.join(RESULTS);
     let rows = fs::read_to_string(&path).map_err(io_error(&path))?;
     let table = StudyTable::read(&rows).map_err(|source| JournalError::Table { path, source })?;

@@ -6,7 +6,7 @@ use crate::statistics::{KolmogorovSmirnov, share_at_most};
 use crate::sweep::figures::overturning::number;
 use crate::write::quoted;
 use std::fmt::Write;
-use teeter_plot::{Axis, AxisError, Figure, Panel, Series};
+use teeter_plot::{Axis, AxisError, Figure, Legend, Panel, Series};
 use toml::de::DeTable;
 
 /// `[distribution]` of a sweep file.
@@ -132,7 +132,9 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
         for (other, of) in studies.iter().skip(1).zip(rest) {
             for (by, sample) in &of.by {
                 let Some((_, own)) = first.by.iter().find(|(name, _)| name == by) else { continue };
-                let Some(KolmogorovSmirnov { distance, p_value }) = KolmogorovSmirnov::of(own, sample) else { continue };
+                let Some(KolmogorovSmirnov { distance, p_value }) = KolmogorovSmirnov::of(own, sample) else {
+                    continue;
+                };
                 let _ = writeln!(
                     tests,
                     "{},{},{},{distance:?},{p_value:?},{},{}",
@@ -168,7 +170,7 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
     if let Some(most) = asked.first().and_then(|asked| asked.at_most) {
         notes.push(format!("Values above {} count as {0}.", digits(most)));
     }
-    let title = format!("Distribution of {label}");
+    let title = format!("Distribution: {label}");
     let panel = Panel::new(Axis::between("Share of cases at or below", 0.0, 1.0)).with(series);
     let mut tables = vec![("distribution.csv", table)];
     if studies.len() > 1 {
@@ -176,7 +178,7 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
     }
     Ok(StudyFigure {
         name: "distribution",
-        figure: Figure::new("distribution", title.clone(), axis).panel(panel),
+        figure: Figure::new("distribution", title.clone(), axis).legend(Legend::Rows).panel(panel),
         title,
         more: Vec::new(),
         tables,

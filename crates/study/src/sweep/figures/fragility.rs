@@ -7,7 +7,7 @@ use crate::statistics::{LognormalFit, NoFit, Observation, interval, resamples};
 use crate::write::quoted;
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use teeter_plot::{Axis, AxisError, Figure, Mark, Panel, Series};
+use teeter_plot::{Axis, AxisError, Figure, Legend, Mark, Panel, Series};
 use toml::de::DeTable;
 
 /// `[fragility]` of a sweep file.
@@ -45,7 +45,8 @@ impl Fragility {
                 "event" => event = Some(Criterion::read(reader, &path, &value)?),
                 "intensity" | "label" => {
                     let items = value.array().unwrap_or_else(|| vec![value]);
-                    let texts = items.iter().map(|item| text(reader, &path, item, EXAMPLE)).collect::<Option<Vec<_>>>()?;
+                    let texts =
+                        items.iter().map(|item| text(reader, &path, item, EXAMPLE)).collect::<Option<Vec<_>>>()?;
                     if word == "label" { labels = texts } else { intensities = texts }
                 }
                 other => {
@@ -92,7 +93,8 @@ impl Seen {
         let intensities = study.table.numbers(column);
         let keys = study.sweep.keys();
         // Over an output each case has its own intensity, and runs of one record belong together.
-        let scaled: Vec<&str> = asked.intensities.iter().map(String::as_str).filter(|name| keys.contains(name)).collect();
+        let scaled: Vec<&str> =
+            asked.intensities.iter().map(String::as_str).filter(|name| keys.contains(name)).collect();
         let others: Vec<Vec<&str>> =
             keys.iter().filter(|key| !scaled.contains(key)).map(|key| study.table.completed(key)).collect();
         let mut groups: BTreeMap<String, Vec<Observation>> = BTreeMap::new();
@@ -205,10 +207,12 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
         Some(first) => first,
         None => (String::new(), (Axis::between("", 0.0, 1.0), Panel::new(Axis::between("", 0.0, 1.0)))),
     };
-    let figure = Figure::new("fragility", title.clone(), axis).panel(panel);
+    let figure = Figure::new("fragility", title.clone(), axis).legend(Legend::Rows).panel(panel);
     let more: Vec<_> = (2..)
         .zip(all)
-        .map(|(k, (label, (axis, panel)))| (label, Figure::new(&format!("fragility-{k}"), title.clone(), axis).panel(panel)))
+        .map(|(k, (label, (axis, panel)))| {
+            (label, Figure::new(&format!("fragility-{k}"), title.clone(), axis).legend(Legend::Rows).panel(panel))
+        })
         .collect();
     Ok(StudyFigure {
         name: "fragility",
@@ -260,8 +264,7 @@ impl Parts {
             positive.iter().copied().reduce(f64::max).unwrap_or(1.0),
         );
         let axis = Axis::logarithmic(label, [low, high])?;
-        let grid: Vec<f64> =
-            (0..POINTS).map(|k| low * (high / low).powf(k as f64 / (POINTS - 1) as f64)).collect();
+        let grid: Vec<f64> = (0..POINTS).map(|k| low * (high / low).powf(k as f64 / (POINTS - 1) as f64)).collect();
         let mut series = Vec::new();
         for (number, (study, curve)) in studies.iter().zip(curves).enumerate() {
             let start = format!("{},{}", quoted(&study.name), quoted(label));
@@ -324,11 +327,8 @@ impl Parts {
                 }
             }
             Err(why) => {
-                let _ = writeln!(
-                    self.fits,
-                    "{start},,,,,,,,{cases},{events},{groups},0,0,{}",
-                    quoted(&why.to_string())
-                );
+                let _ =
+                    writeln!(self.fits, "{start},,,,,,,,{cases},{events},{groups},0,0,{}", quoted(&why.to_string()));
                 self.notes.push(format!("{}, {label}: no curve: {why}.", study.name));
             }
         }

@@ -4,7 +4,7 @@ use super::super::criterion::Criterion;
 use super::super::spec::{Node, Reader, entries};
 use super::{Ensemble, StudyFigure, axis_label, text};
 use std::fmt::Write;
-use teeter_plot::{Axis, AxisError, Figure, Panel, Series};
+use teeter_plot::{Axis, AxisError, Figure, Legend, Panel, Series};
 use toml::de::DeTable;
 
 /// `[overturning]` of a sweep file.
@@ -21,8 +21,7 @@ pub(crate) struct Overturning {
 }
 
 const WORDS: [&str; 7] = ["event", "x", "y", "by", "x_label", "y_label", "by_label"];
-const EXAMPLE: &str =
-    "such as x = \"signal.shake.frequency\", y = \"signal.shake.scale\", event = \"overturned\"";
+const EXAMPLE: &str = "such as x = \"signal.shake.frequency\", y = \"signal.shake.scale\", event = \"overturned\"";
 
 /// Kinds of events that have a colour of their own; the others share the last.
 const MOST_KINDS: usize = 6;
@@ -138,7 +137,7 @@ pub(super) fn figure(study: &Ensemble, asked: &Overturning) -> Result<StudyFigur
     let panel = Panel::new(y).with(series).height_mm(80.0);
     Ok(StudyFigure {
         name: "overturning",
-        figure: Figure::new("overturning", title.clone(), x).panel(panel),
+        figure: Figure::new("overturning", title.clone(), x).legend(Legend::Rows).panel(panel),
         title,
         more: Vec::new(),
         tables: vec![("overturning.csv", table)],

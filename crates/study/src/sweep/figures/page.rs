@@ -7,7 +7,7 @@ use teeter_report::STYLE;
 
 const OWN_STYLE: &str = "\
 main { display: block; }\nmain > section { margin-top: 1.5rem; }\n\
-.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(20rem, 100%), 1fr)); gap: 1rem; }\n\
+.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); gap: 1rem; }\n\
 .figures svg { display: block; width: 100%; height: auto; max-width: 44rem; margin: 0 auto; }\n\
 li { margin: .3rem 0; overflow-wrap: anywhere; }\ntd:first-child { text-align: left; }\n";
 
@@ -50,14 +50,17 @@ fn section(html: &mut String, figure: &StudyFigure) {
         figure.themed()
     );
     let (header, rows) = &figure.summary;
+    // Of a single study its name stands in the heading, and a column without an entry says nothing.
+    let shown: Vec<usize> =
+        (0..header.len()).filter(|k| rows.iter().any(|row| row.get(*k).is_some_and(|cell| !cell.is_empty()))).collect();
     html.push_str("<div class=\"scroll\" tabindex=\"0\"><table>\n<thead><tr>");
-    for cell in header {
+    for cell in shown.iter().filter_map(|k| header.get(*k)) {
         let _ = write!(html, "<th scope=\"col\">{}</th>", escaped(cell));
     }
     html.push_str("</tr></thead>\n<tbody>\n");
     for row in rows {
         html.push_str("<tr>");
-        for cell in row {
+        for cell in shown.iter().filter_map(|k| row.get(*k)) {
             let _ = write!(html, "<td>{}</td>", escaped(cell));
         }
         html.push_str("</tr>\n");
