@@ -111,6 +111,9 @@ impl LognormalFit {
             observations.iter().map(one).sum::<f64>()
         };
         let (mut at, mut value) = ([0.0, 1.0], likelihood([0.0, 1.0]));
+        // Near the maximum the likelihood doesn't tell steps apart, but its slope does: a decrease by
+        // rounding is none.
+        let grown = |reached: f64, value: f64| reached >= value - 1e-12 * value.abs();
         for _ in 0..MOST_ITERATIONS {
             let (mut slope, mut curvature) = ([0.0; 2], [0.0; 3]);
             for seen in observations {
@@ -134,13 +137,13 @@ impl LognormalFit {
             let (next, reached) = loop {
                 let next = [at[0] + part * step[0], at[1] + part * step[1]];
                 let reached = likelihood(next);
-                if reached >= value || part < 1e-9 {
+                if grown(reached, value) || part < 1e-9 {
                     break (next, reached);
                 }
                 part *= 0.5;
             };
             let moved = (next[0] - at[0]).abs().max((next[1] - at[1]).abs());
-            if reached >= value {
+            if grown(reached, value) {
                 (at, value) = (next, reached);
             }
             if moved < 1e-12 * (1.0 + at[0].abs() + at[1].abs()) {
