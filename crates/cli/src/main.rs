@@ -4,6 +4,7 @@ mod check;
 mod console;
 mod interrupt;
 mod progress;
+mod record;
 mod render;
 mod run;
 mod scene;
@@ -142,7 +143,7 @@ enum Command {
     #[command(after_help = SWEEP_HELP, args_conflicts_with_subcommands = true)]
     Sweep {
         /// The sweep file: a scene, the keys that vary, and the numbers wanted
-        #[arg(value_name = "SWEEP.toml", required_unless_present = "merge", conflicts_with = "merge")]
+        #[arg(value_name = "SWEEP.toml", required_unless_present_any = ["merge", "compare"], conflicts_with = "merge")]
         sweep: Option<PathBuf>,
         /// Folder for the results (default: `runs/` with the name of the sweep file)
         #[arg(long, value_name = "DIR")]
@@ -160,11 +161,72 @@ enum Command {
         #[arg(long, value_name = "DIR", num_args = 1.., requires = "out")]
         #[arg(conflicts_with_all = ["jobs", "shard", "resume"])]
         merge: Vec<PathBuf>,
+        /// Put the figures of studies that have ended side by side, and test whether their
+        /// distributions differ, into the folder given by --out
+        #[arg(long, value_name = "DIR", num_args = 2.., requires = "out")]
+        #[arg(conflicts_with_all = ["jobs", "shard", "resume", "merge", "sweep"])]
+        compare: Vec<PathBuf>,
         /// Print only errors
         #[arg(long)]
         quiet: bool,
         /// Replace results of an earlier study
         #[arg(long)]
+        force: bool,
+    },
+    /// Show what an accelerogram holds: peaks, Arias intensity, significant duration, response
+    /// spectrum
+    #[command(after_help = RECORD_HELP)]
+    Record {
+        /// The record: PEER .AT2, ESM or COSMOS ASCII, or a table
+        file: PathBuf,
+        /// One of several accelerations of a table or a COSMOS file
+        #[arg(long, value_name = "NAME")]
+        component: Option<String>,
+        /// Unit of the accelerations of a table whose heading has none, such as gal; m/s^2 if left
+        /// out
+        #[arg(long, value_name = "UNIT")]
+        unit: Option<String>,
+        /// Time between two values of a table without times, such as "10 ms"
+        #[arg(long, value_name = "T", allow_hyphen_values = true)]
+        step: Option<String>,
+        /// Start of the part that is used
+        #[arg(long, value_name = "T", allow_hyphen_values = true)]
+        from: Option<String>,
+        /// Its end
+        #[arg(long, value_name = "T", allow_hyphen_values = true)]
+        to: Option<String>,
+        /// Polynomial that is subtracted: none, mean, linear, quadratic, cubic, quartic or quintic
+        #[arg(long, value_name = "DEGREE")]
+        baseline: Option<String>,
+        /// Fraction of the duration over which each end is faded
+        #[arg(long, value_name = "X", allow_hyphen_values = true)]
+        taper: Option<String>,
+        /// Factor of the acceleration
+        #[arg(long, value_name = "X", allow_hyphen_values = true)]
+        scale: Option<String>,
+        /// Peak acceleration to which it is scaled, such as "0.4 gn"
+        #[arg(long, value_name = "A", allow_hyphen_values = true)]
+        peak: Option<String>,
+        /// Peak velocity to which it is scaled, such as "0.3 m/s"
+        #[arg(long, value_name = "V", allow_hyphen_values = true)]
+        peak_velocity: Option<String>,
+        /// Arias intensity to which it is scaled, such as "1.2 m/s"
+        #[arg(long, value_name = "I", allow_hyphen_values = true)]
+        arias: Option<String>,
+        /// Spectral acceleration at --period, for 5 % damping, to which it is scaled
+        #[arg(long, value_name = "A", allow_hyphen_values = true)]
+        spectral_acceleration: Option<String>,
+        /// Natural period of that spectral acceleration, such as "0.5 s"
+        #[arg(long, value_name = "T", allow_hyphen_values = true)]
+        period: Option<String>,
+        /// Print a JSON object, with the whole spectrum and all digits
+        #[arg(long)]
+        json: bool,
+        /// Write a page, its figures, the motion over time and the numbers to DIR
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Replace results of an earlier call
+        #[arg(long, requires = "out")]
         force: bool,
     },
     /// List the contact solvers: their dimensions, law (exact or convex) and source
@@ -218,11 +280,19 @@ Each solve starts from p = 0. Its residual is that of the one judge, whatever th
 fails is a row. The time is the solver's alone: problem read, memory ready. A solve of less than 0.1 s is repeated from the
 same start, and the median taken.";
 
+const RECORD_HELP: &str = "Examples:
+  teeter record quake.at2
+  teeter record quake.at2 --baseline linear --taper 0.05 --peak \"0.4 gn\" --out quake
+  teeter record table.csv --step \"10 ms\" --unit gal --json
+
+The corrections are those of a record in a scene, in the same order: cut, baseline, taper, scale (docs/signals.md).";
+
 const SWEEP_HELP: &str = "Examples:
   teeter sweep friction.toml
   teeter sweep friction.toml --out results --resume          # only what is missing, after a kill, too
   teeter sweep friction.toml --shard 2/8 --out part-2        # on one of eight machines
   teeter sweep --merge part-1 part-2 part-3 --out results
+  teeter sweep --compare on-ground on-beam --out both        # fragility curves, distributions
 
 A sweep file:
   scene = \"rocking.toml\"
@@ -314,8 +384,48 @@ fn main() -> ExitCode {
             let jobs = jobs.map(usize::from);
             sweep::sweep(&sweep::Options { sweep, out, jobs, shard, resume, force, quiet }).into()
         }
+        Command::Sweep { sweep: None, out, compare, quiet, force, .. } if !compare.is_empty() => {
+            sweep::compare(&compare, &out.unwrap_or_default(), force, quiet).into()
+        }
         Command::Sweep { sweep: None, out, merge, quiet, force, .. } => {
             sweep::merge_shards(&merge, &out.unwrap_or_default(), force, quiet).into()
+        }
+        Command::Record {
+            file,
+            component,
+            unit,
+            step,
+            from,
+            to,
+            baseline,
+            taper,
+            scale,
+            peak,
+            peak_velocity,
+            arias,
+            spectral_acceleration,
+            period,
+            json,
+            out,
+            force,
+        } => {
+            let keys = [
+                ("component", component),
+                ("unit", unit),
+                ("step", step),
+                ("from", from),
+                ("to", to),
+                ("baseline", baseline),
+                ("taper", taper),
+                ("scale", scale),
+                ("peak", peak),
+                ("peak_velocity", peak_velocity),
+                ("arias", arias),
+                ("spectral_acceleration", spectral_acceleration),
+                ("period", period),
+            ];
+            let keys = keys.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?))).collect();
+            record::record(&record::Options { file, keys, json, out, force }).into()
         }
         Command::Solvers => solve::list().into(),
         Command::Solve { paths, solvers, tolerance, time_limit, json, solutions, profile, force } => {

@@ -1,18 +1,19 @@
 //! `teeter sweep`.
 
-use crate::console::Console;
+use crate::console::{Console, print};
 use crate::interrupt;
 use crate::progress::CaseBar;
 use crate::render::{Presenter, refusal};
 use crate::run::Exit;
+use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use teeter_report::Results;
 use teeter_run::SceneSource;
 use teeter_scenario::diagnostic::Diagnostics;
 use teeter_study::sweep::{
-    FILES, IDENTITY, Journal, JournalError, RESULTS, Shard, Sweep, SweepIdentity, matching_files, merge, run_cases,
-    write_results,
+    Ensemble, FIGURE_FILES, FILES, IDENTITY, Journal, JournalError, RESULTS, Shard, Sweep, SweepIdentity, ended_study,
+    matching_files, merge, run_cases, study_figures, study_page, write_results,
 };
 use teeter_study::{StudyScene, runner};
 
@@ -54,7 +55,88 @@ pub(crate) fn sweep(options: &Options) -> Exit {
         Ok(opened) => opened,
         Err(error) => return refused(format!("error: {error}")),
     };
-    run(console, &study, &results, journal, options.jobs)
+    let exit = run(console, &study, &results, journal, options.jobs);
+    // Of a shard they would be of a part of the cases.
+    if exit == Exit::FinishedRun && study.sweep.wants_figures() && shard == Shard::ALL {
+        return draw(console, &results, &stem);
+    }
+    exit
+}
+
+/// Makes the figures of a study that has ended.
+fn draw(console: Console, results: &Results, title: &str) -> Exit {
+    let drawn = || -> Result<(), Box<dyn Error>> {
+        let study = ended_study(results.folder(), "")?;
+        write_figures(results, title, &[study])
+    };
+    match drawn() {
+        Ok(()) => {
+            console.note(&format!("figures in {}", results.folder().join("study.html").display()));
+            Exit::FinishedRun
+        }
+        Err(error) => {
+            console.error(&format!("error: the figures can't be made: {error}"));
+            Exit::Failed
+        }
+    }
+}
+
+/// Writes the figures of studies, their tables and their page; returns their notes.
+fn write_figures(results: &Results, title: &str, studies: &[Ensemble]) -> Result<(), Box<dyn Error>> {
+    let figures = study_figures(studies)?;
+    for figure in &figures {
+        for (name, svg) in figure.svgs() {
+            results.write(&name, svg)?;
+        }
+        for (name, table) in &figure.tables {
+            results.write(name, table)?;
+        }
+    }
+    results.write("study.html", study_page(title, studies, &figures))?;
+    let notes: String = figures.iter().flat_map(|figure| &figure.notes).map(|note| format!("{note}\n")).collect();
+    Ok(print(&notes)?)
+}
+
+/// Puts the figures of studies side by side.
+pub(crate) fn compare(folders: &[PathBuf], out: &Path, force: bool, quiet: bool) -> Exit {
+    let console = Console::new(quiet);
+    let refused = |text: String| {
+        console.error(&text);
+        Exit::BadInput
+    };
+    let name = |folder: &PathBuf| {
+        let canonical = folder.canonicalize().unwrap_or_else(|_| folder.clone());
+        canonical.file_name().map_or_else(|| folder.display().to_string(), |name| name.to_string_lossy().into_owned())
+    };
+    let studies: Result<Vec<Ensemble>, JournalError> =
+        folders.iter().map(|folder| ended_study(folder, &name(folder))).collect();
+    let studies = match studies {
+        Ok(studies) => studies,
+        Err(error) => return refused(format!("error: {error}")),
+    };
+    match study_figures(&studies) {
+        Ok(figures) if figures.is_empty() => {
+            let help = "give all of them [fragility] or [distribution]";
+            return refused(format!("error: the sweep files ask for no figure in common\n  help: {help}"));
+        }
+        Ok(_) => {}
+        Err(error) => return refused(format!("error: {error}")),
+    }
+    let results = match Results::create_of(&FIGURE_FILES, out, force) {
+        Ok(results) => results,
+        Err(error) => return refused(format!("error: {error}")),
+    };
+    let title = studies.iter().map(|study| study.name.as_str()).collect::<Vec<_>>().join(" and ");
+    match write_figures(&results, &title, &studies) {
+        Ok(()) => {
+            console.note(&format!("figures in {}", out.join("study.html").display()));
+            Exit::FinishedRun
+        }
+        Err(error) => {
+            console.error(&format!("error: {error}"));
+            Exit::Failed
+        }
+    }
 }
 
 /// Takes the folder: of a study that continues with its rows.
@@ -80,12 +162,13 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
         console.note(&format!("{before} of {total} cases are done"));
     }
     let bar = CaseBar::new(console, before, total);
-    let (mut incomplete, mut unsolved, mut failure) = (0_u64, 0_u64, None);
+    let (mut incomplete, mut unsolved, mut windows, mut failure) = (0_u64, 0_u64, 0_u64, None);
     let mut empty = vec![true; study.sweep.outputs().len()];
     let threads = jobs.unwrap_or_else(runner::cores);
     run_cases(&study.sweep, &study.source, missing, threads, cancel, |row| {
         incomplete += u64::from(!row.status.is_complete());
         unsolved += u64::from(row.unsolved_steps > 0);
+        windows += u64::from(row.changes() > 1);
         empty.iter_mut().zip(&row.outputs).for_each(|(empty, cell)| *empty &= cell.is_empty());
         if let Err(error) = journal.add(row.number, &row.line(&study.sweep)) {
             failure = Some(error);
@@ -115,6 +198,13 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
         let have = if unsolved == 1 { "case has" } else { "cases have" };
         console.note(&format!("{unsolved} {have} steps that were not solved to tolerance: see `unsolved_steps`"));
     }
+    if windows > 0 {
+        let text =
+            format!("in {windows} of {total} cases there are several limits: the lowest one seen is in the table");
+        console.note(&format!("{text}, their number in `find.changes`"));
+    } else if study.sweep.bisects_blindly() && total > incomplete {
+        console.note("a bisection sees one limit of several: `scan` under [find] also runs values in between");
+    }
     let ran = journal.done() - before > incomplete;
     for (output, _) in study.sweep.outputs().iter().zip(&empty).filter(|(_, empty)| **empty && ran) {
         console.note(&format!("warning: `{}` is empty in all cases: {}", output.name(), why_empty(output)));
@@ -134,16 +224,18 @@ fn why_empty(output: &teeter_study::sweep::Output) -> String {
 /// Puts the folders of all shards together.
 pub(crate) fn merge_shards(folders: &[PathBuf], out: &Path, force: bool, quiet: bool) -> Exit {
     let console = Console::new(quiet);
-    let merged = || -> Result<(), JournalError> {
+    let merged = || -> Result<(bool, Results), JournalError> {
         let (table, identity) = merge(folders)?;
         let results = Results::create_of(&FILES, out, force)?;
         results.write(IDENTITY, identity)?;
-        Ok(results.write(RESULTS, table)?)
+        results.write(RESULTS, table)?;
+        Ok((ended_study(out, "")?.sweep.wants_figures(), results))
     };
     match merged() {
-        Ok(()) => {
+        Ok((figures, results)) => {
             console.note(&format!("results in {}", out.join(RESULTS).display()));
-            Exit::FinishedRun
+            let title = out.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+            if figures { draw(console, &results, &title) } else { Exit::FinishedRun }
         }
         Err(error) => {
             console.error(&format!("error: {error}"));

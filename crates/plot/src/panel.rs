@@ -221,6 +221,12 @@ impl Panel {
             let path = line_path(area.points(), |x| frame.px(x), py);
             let _ = writeln!(svg, "<path d=\"{path}\" {}/>", area_style(area.number_at(k), theme));
         }
+        for (k, cells) in series.iter().enumerate() {
+            let Drawn::Cells { width, height } = cells.drawn else { continue };
+            let colour = Colour::Series(cells.number_at(k)).value(theme);
+            let path = cells_path(cells.points(), [width, height], |x| frame.px(x), py);
+            let _ = writeln!(svg, "<path d=\"{path}\" fill=\"{colour}\" stroke=\"none\"/>");
+        }
         for (k, line) in series.iter().enumerate().filter(|(_, series)| series.drawn == Drawn::Line) {
             let path = line_path(line.points(), |x| frame.px(x), py);
             let stroke = stroke(line.number_at(k), line.dash, theme);
@@ -346,6 +352,29 @@ fn draw_bands(svg: &mut String, frame: &Frame, theme: Theme, bands: &[Band]) {
     }
 }
 
+/// Rectangles about points; neighbours in a row are joined, which saves most of the text of a map.
+fn cells_path(
+    points: &[(f64, f64)],
+    [width, height]: [f64; 2],
+    px: impl Fn(f64) -> f64,
+    py: impl Fn(f64) -> f64,
+) -> String {
+    let mut finite: Vec<(f64, f64)> = points.iter().copied().filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
+    finite.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.total_cmp(&b.0)));
+    let mut path = String::new();
+    let mut rest = finite.as_slice();
+    while let Some(&(first, y)) = rest.first() {
+        let joined = |pair: &[(f64, f64)]| pair[1].1 == y && pair[1].0 - pair[0].0 <= 1.01 * width;
+        let count = 1 + rest.windows(2).take_while(|pair| joined(pair)).count();
+        let last = rest.get(count - 1).map_or(first, |point| point.0);
+        let (left, right) = (px(first - 0.5 * width), px(last + 0.5 * width));
+        let (top, bottom) = (py(y + 0.5 * height), py(y - 0.5 * height));
+        let _ = write!(path, "M{left:.2} {top:.2}H{right:.2}V{bottom:.2}H{left:.2}z");
+        rest = rest.get(count..).unwrap_or_default();
+    }
+    path
+}
+
 /// A line through the finite points, broken where one isn't finite; points too close for print
 /// resolution are omitted.
 fn line_path(points: &[(f64, f64)], px: impl Fn(f64) -> f64, py: impl Fn(f64) -> f64) -> String {
@@ -383,6 +412,13 @@ mod tests {
         assert!(svg.contains(">a&lt;b</text>") && !svg.contains("outside"));
         let right = svg.split("<text").find(|piece| piece.contains(">right<")).unwrap();
         assert!(right.contains("text-anchor=\"end\""), "{right}");
+    }
+
+    #[test]
+    fn cells_of_a_row_are_one_rectangle_where_they_touch() {
+        let points = [(1.0, 0.0), (2.0, 0.0), (4.0, 0.0), (1.0, 1.0), (f64::NAN, 1.0)];
+        let path = cells_path(&points, [1.0, 1.0], |x| x, |y| -y);
+        assert_eq!(path, "M0.50 -0.50H2.50V0.50H0.50zM3.50 -0.50H4.50V0.50H3.50zM0.50 -1.50H1.50V-0.50H0.50z");
     }
 
     #[test]

@@ -25,11 +25,19 @@ pub(crate) enum Dash {
 }
 
 /// How a series is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Drawn {
     Line,
-    Marks { mark: Mark, hollow: bool },
+    Marks {
+        mark: Mark,
+        hollow: bool,
+    },
     Area,
+    /// Filled rectangles about the points, with these sides.
+    Cells {
+        width: f64,
+        height: f64,
+    },
 }
 
 /// The marker shape of a series.
@@ -84,6 +92,17 @@ impl Series {
         let back = points.iter().rev().map(|&(x, _, upper)| (x, upper));
         let outline: Vec<(f64, f64)> = points.iter().map(|&(x, lower, _)| (x, lower)).chain(back).collect();
         Self { drawn: Drawn::Area, ..Self::line(label, outline) }
+    }
+
+    /// Filled rectangles centred at points, with sides in the units of the axes: the cells of a map.
+    /// On linear axes; drawn below all lines.
+    #[must_use]
+    pub fn cells(
+        label: impl Into<String>,
+        points: impl IntoIterator<Item = (f64, f64)>,
+        [width, height]: [f64; 2],
+    ) -> Self {
+        Self { drawn: Drawn::Cells { width, height }, ..Self::line(label, points) }
     }
 
     /// Filled marks at points. Without a label they aren't in the legend.

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::error::RecordError;
+use crate::measures::IntensityMeasure;
 use crate::record::Record;
 
 /// Highest degree of a baseline.
@@ -36,6 +37,30 @@ impl Record {
         }
         // Dividing first makes the largest value exactly the peak.
         self.with(self.accelerations().iter().map(|a| a / most * peak).collect())
+    }
+
+    /// The record times the positive factor that gives an intensity measure this value: m/s² for
+    /// accelerations, m/s for the peak velocity and the Arias intensity. Of the record as it is, so
+    /// after other corrections.
+    ///
+    /// # Errors
+    /// If the value isn't positive and finite, the acceleration is 0 throughout, or the period of a
+    /// spectral acceleration is out of the range of [`Record::spectrum`].
+    pub fn scaled_to(&self, measure: IntensityMeasure, value: f64) -> Result<Self, RecordError> {
+        if !(value > 0.0 && value.is_finite()) {
+            let range = "positive and finite";
+            return Err(RecordError::Parameter { what: measure.name(), value, range });
+        }
+        if let IntensityMeasure::PeakAcceleration = measure {
+            return self.scaled_to_peak(value);
+        }
+        if self.peak_acceleration() == 0.0 {
+            return Err(RecordError::Still);
+        }
+        let own = self.intensity(measure)?;
+        // Arias' grows with the square of the acceleration.
+        let factor = if let IntensityMeasure::Arias = measure { (value / own).sqrt() } else { value / own };
+        self.scaled(factor)
     }
 
     /// The values with times in [`from`, `to`], s; the new record starts at time 0. The ends have a
@@ -171,6 +196,23 @@ mod tests {
             "the acceleration is 0 throughout: it can't be scaled to a peak"
         );
         assert!(message(one.scaled(1e300).unwrap_err()).contains("at most 1e12 m/s^2"));
+    }
+
+    #[test]
+    fn scaling_reaches_every_intensity_measure() {
+        let one = record((0..800).map(|k| (0.11 * f64::from(k)).sin() * (-0.004 * f64::from(k)).exp()));
+        let spectral = IntensityMeasure::SpectralAcceleration { period: 0.5 };
+        use IntensityMeasure::{Arias, PeakAcceleration, PeakVelocity};
+        for (measure, value) in [(PeakAcceleration, 3.0), (PeakVelocity, 0.4), (Arias, 1.5), (spectral, 7.0)] {
+            let scaled = one.scaled_to(measure, value).unwrap();
+            let got = scaled.intensity(measure).unwrap();
+            // The factor rounds, and so does the sum of 800 squares.
+            assert!((got / value - 1.0).abs() < 1e-13, "{measure:?}: {got}");
+            assert!(scaled.accelerations()[5] > 0.0, "signs are kept");
+            assert_eq!(record([0.0, 0.0]).scaled_to(measure, 1.0), Err(RecordError::Still));
+            assert!(one.scaled_to(measure, 0.0).is_err() && one.scaled_to(measure, f64::NAN).is_err());
+        }
+        assert!(one.scaled_to(IntensityMeasure::SpectralAcceleration { period: 0.0 }, 1.0).is_err());
     }
 
     #[test]

@@ -187,7 +187,7 @@ pub enum RecordError {
         /// Duration of the record, s.
         duration: f64,
     },
-    /// A record of zeros, which can't be scaled to a peak.
+    /// A record of zeros, which can't be scaled to a value.
     #[error("the acceleration is 0 throughout: it can't be scaled to a peak")]
     Still,
 }

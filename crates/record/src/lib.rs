@@ -45,7 +45,7 @@ mod units;
 
 pub use error::RecordError;
 pub use format::Format;
-pub use measures::Peak;
+pub use measures::{IntensityMeasure, Peak};
 pub use record::{ReadSettings, Record};
 pub use spectrum::Response;
 

@@ -63,6 +63,39 @@ impl LinearSegment {
     }
 }
 
+/// A number that says how strong a record is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum IntensityMeasure {
+    /// The peak ground acceleration, m/s².
+    PeakAcceleration,
+    /// The peak ground velocity, m/s.
+    PeakVelocity,
+    /// The Arias intensity, m/s.
+    Arias,
+    /// The pseudo-acceleration of the response spectrum for 5 % damping, m/s².
+    SpectralAcceleration {
+        /// The natural period, s.
+        period: f64,
+    },
+}
+
+/// Damping ratio of a spectral acceleration.
+const DAMPING_RATIO: f64 = 0.05;
+
+impl IntensityMeasure {
+    /// Its name in messages.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PeakAcceleration => "the peak acceleration",
+            Self::PeakVelocity => "the peak velocity",
+            Self::Arias => "the Arias intensity",
+            Self::SpectralAcceleration { .. } => "the spectral acceleration",
+        }
+    }
+}
+
 impl Record {
     /// Peak ground acceleration, m/s².
     #[must_use]
@@ -119,6 +152,31 @@ impl Record {
     pub fn arias_intensity(&self) -> f64 {
         self.segments().map(|segment| segment.squares(segment.h)).sum::<f64>() * std::f64::consts::PI
             / (2.0 * STANDARD_GRAVITY)
+    }
+
+    /// The Arias intensity by the plain sum π/(2g) Δt Σ a² over all values, m/s, as many tables of
+    /// records have it. It counts jumps between values in full, where the lines between them reach
+    /// the same height for an instant only: [`Record::arias_intensity`] is at most this.
+    #[must_use]
+    pub fn arias_sum(&self) -> f64 {
+        let squares: f64 = self.accelerations().iter().map(|a| a * a).sum();
+        std::f64::consts::PI / (2.0 * STANDARD_GRAVITY) * self.dt() * squares
+    }
+
+    /// An intensity measure of the record, m/s² or m/s.
+    ///
+    /// # Errors
+    /// As [`Record::spectrum`], for a spectral acceleration.
+    pub fn intensity(&self, measure: IntensityMeasure) -> Result<f64, RecordError> {
+        Ok(match measure {
+            IntensityMeasure::PeakAcceleration => self.peak_acceleration(),
+            IntensityMeasure::PeakVelocity => self.velocity_peak().size,
+            IntensityMeasure::Arias => self.arias_intensity(),
+            IntensityMeasure::SpectralAcceleration { period } => {
+                let responses = self.spectrum(DAMPING_RATIO, &[period])?;
+                responses.first().map_or(0.0, crate::Response::pseudo_acceleration)
+            }
+        })
     }
 
     /// The times when the Arias intensity reaches two fractions of its total, s: `[0.05, 0.95]` are

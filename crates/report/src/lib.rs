@@ -41,7 +41,8 @@ pub use columns::columns;
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
 pub use made_energy::ENERGY_MADE;
 pub use page::{
-    HalfCycle, Joint, PageRecorder, STYLE, ThrustLine, escaped, figures, half_cycles, render, thrust_lines,
+    HalfCycle, Joint, PageRecorder, STYLE, ThrustLine, escaped, figures, half_cycles, record_figures, record_page,
+    render, spectrum_periods, thrust_lines,
 };
 pub use readable::{shortest, with_digits, with_unit};
 pub use recorder::{ImpactRow, Record, Recorder};
@@ -49,7 +50,7 @@ pub use results::{FILES, Reserved, Results, ResultsError};
 pub use run_recorder::{Origin, RunRecorder};
 pub use schedule::Schedule;
 pub use sections::{BeamRecord, LargestStress, ReactionRange, envelopes};
-pub use summary::{EndedWord, Summary};
+pub use summary::{EndedWord, RecordSummary, Summary};
 pub use taken_energy::ENERGY_TAKEN;
 pub use unlocated::UNLOCATED;
 pub use verdict::{BodyVerdict, Fate, Fates, StopReason, Way};

@@ -25,6 +25,7 @@ mod scenery;
 mod span;
 mod thrust;
 
+pub use accelerograms::{record_figures, record_page, spectrum_periods};
 pub use chain::{Joint, ThrustLine, thrust_lines};
 pub use figures::figures;
 pub use html::{STYLE, render};

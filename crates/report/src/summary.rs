@@ -253,7 +253,9 @@ pub struct RecordSummary {
 }
 
 impl RecordSummary {
-    fn new(of: &RecordScene) -> Self {
+    /// The numbers of a record as it is used.
+    #[must_use]
+    pub fn new(of: &RecordScene) -> Self {
         let record = &of.record;
         Self {
             motion: of.path.clone(),

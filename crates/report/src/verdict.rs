@@ -119,6 +119,21 @@ struct Seen {
     sunk: Option<f64>,
     /// Where it stood at the start along what carries it, m.
     stood: Option<f64>,
+    /// How it stood at the start, once known.
+    #[serde(skip)]
+    stance: KnownStance,
+}
+
+/// A stance that follows from the rest of a record, kept as it takes long to find: longer than all
+/// else that is done for a short run. `Some(None)` for a block that can't overturn.
+#[derive(Clone, Copy, Debug, Default)]
+struct KnownStance(Option<Option<Stance>>);
+
+/// A record is the same whether it is kept or not.
+impl PartialEq for KnownStance {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 /// What is known of the blocks so far.
@@ -199,7 +214,8 @@ impl Watch {
 
     fn stand(&mut self, fates: &Fates) {
         for (watched, seen) in self.blocks.iter_mut().zip(&fates.blocks) {
-            watched.stance = watched.outline.as_ref().and_then(|outline| outline.stance(seen.began));
+            let found = || watched.outline.as_ref().and_then(|outline| outline.stance(seen.began));
+            watched.stance = seen.stance.0.unwrap_or_else(found);
         }
     }
 }
@@ -237,6 +253,9 @@ impl Fates {
             self.blocks.push(Seen { began: angle - tilt, angle, stood, ..Seen::default() });
         }
         watch.stand(self);
+        for (seen, watched) in self.blocks.iter_mut().zip(&watch.blocks) {
+            seen.stance = KnownStance(Some(watched.stance));
+        }
         self.look(watch, layout, state.t, state);
     }
 

@@ -5,7 +5,7 @@ use crate::document::Document;
 use crate::keys::SCENE;
 
 pub use teeter_text::decode::LARGEST_FILE;
-pub(crate) use teeter_text::decode::{Decoded, in_order};
+pub(crate) use teeter_text::decode::{Decoded, ParsedText, in_order};
 
 /// Reads a scene. `file` is its name in messages; each of `sets` is a key's path and a value that
 /// takes precedence over the file.
@@ -37,9 +37,9 @@ pub fn parse(source: &str, file: &str, sets: &[(String, String)]) -> Result<Docu
     teeter_text::decode::parse(&SCENE, source, file, sets)
 }
 
-/// Reads a scene, continuing after errors.
-pub(crate) fn decode(source: &str, file: &str, sets: &[(String, String)]) -> Decoded {
-    teeter_text::decode::decode(&SCENE, source, file, sets)
+/// Parses the text of a scene.
+pub(crate) fn parsed(source: &str, file: &str) -> ParsedText {
+    ParsedText::new(&SCENE, source, file)
 }
 
 /// The text of a file's bytes.

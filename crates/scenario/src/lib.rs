@@ -50,6 +50,7 @@ pub mod output_size;
 mod overlap;
 mod placement;
 pub mod preview;
+mod record_alone;
 mod record_checks;
 mod required;
 pub mod resolve;
@@ -73,6 +74,7 @@ pub use left_out::left_out;
 pub use meeting::{Meeting, Shapes};
 pub use opening::OPEN_GAP;
 pub use placement::{InstabilityMode, PlacementError};
+pub use record_alone::record_alone;
 pub use required::{Extent, Limits, Removed, Required};
 pub use resolve::matches_pattern;
 pub use signal_resolution::FAR_TURN;
@@ -105,17 +107,44 @@ pub fn load_with(
     sets: &[(String, String)],
     read: &mut resolve::ReadFile<'_>,
 ) -> Result<resolve::Resolved, diagnostic::Diagnostics> {
-    let decode::Decoded { document, mut found, whole } = decode::decode(decode::text(bytes, file)?, file, sets);
-    if !found.has_errors() {
-        return resolve::resolve(document, stem, read).map_err(|mut found| {
+    ParsedScene::new(bytes, file)?.load(stem, sets, read)
+}
+
+/// The text of a scene, parsed once, to be loaded with many settings.
+#[derive(Debug, Clone)]
+pub struct ParsedScene(decode::ParsedText);
+
+impl ParsedScene {
+    /// Parses a scene; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// If it is not a text; all else that is wrong is found by [`Self::load`].
+    pub fn new(bytes: &[u8], file: &str) -> Result<Self, diagnostic::Diagnostics> {
+        Ok(Self(decode::parsed(decode::text(bytes, file)?, file)))
+    }
+
+    /// As [`load_with`].
+    ///
+    /// # Errors
+    /// As [`load_with`].
+    pub fn load(
+        &self,
+        stem: &str,
+        sets: &[(String, String)],
+        read: &mut resolve::ReadFile<'_>,
+    ) -> Result<resolve::Resolved, diagnostic::Diagnostics> {
+        let decode::Decoded { document, mut found, whole } = self.0.decode(sets);
+        if !found.has_errors() {
+            return resolve::resolve(document, stem, read).map_err(|mut found| {
+                decode::in_order(&mut found, sets);
+                found
+            });
+        }
+        // Not if a part could not be read, as the rest may refer to it.
+        if whole {
+            found.0.extend(resolve::mistakes(&document, read));
             decode::in_order(&mut found, sets);
-            found
-        });
+        }
+        Err(found)
     }
-    // Not if a part could not be read, as the rest may refer to it.
-    if whole {
-        found.0.extend(resolve::mistakes(&document, read));
-        decode::in_order(&mut found, sets);
-    }
-    Err(found)
 }

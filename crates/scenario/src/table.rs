@@ -112,6 +112,10 @@ const RECORD: &[Key] = &[
     key("taper", Kind::Number(TAPER), Default("0.0"), "0.05", "Fraction of the duration over which each end is then faded by half a cosine."),
     key("scale", Kind::Number(Range::ANY), Optional, "0.5", "Factor of the acceleration, applied last."),
     key("peak", Kind::Quantity(Dimension::ACCELERATION, Range::POSITIVE), Optional, "\"0.4 gn\"", "Instead of scale: the peak acceleration to which the record is scaled; its signs are kept."),
+    key("peak_velocity", Kind::Quantity(Dimension::VELOCITY, Range::POSITIVE), Optional, "\"0.3 m/s\"", "Instead of scale: the peak velocity, from rest, to which it is scaled."),
+    key("arias", Kind::Quantity(Dimension::VELOCITY, Range::POSITIVE), Optional, "\"1.2 m/s\"", "Instead of scale: the Arias intensity to which it is scaled."),
+    key("spectral_acceleration", Kind::Quantity(Dimension::ACCELERATION, Range::POSITIVE), Optional, "\"0.5 gn\"", "Instead of scale: the pseudo-acceleration of its response spectrum at `period`, for 5 % damping, to which it is scaled."),
+    key("period", TIME, Optional, "\"0.5 s\"", "Natural period of that spectral acceleration."),
 ];
 const TAPER: Range = Range::new(Bound::Closed(0.0), Bound::Closed(0.5));
 
@@ -407,6 +411,7 @@ pub static TABLES: &[TableSchema] = &[
             key("period", TIME, Optional, "\"0.5 s\"", "Duration of a cycle, instead of the frequency.").only_with("shape", OSCILLATING),
             key("phase", ANGLE, Default("\"0 deg\""), "\"20 deg\"", "Argument of the sine at the start.").only_with("shape", &["harmonic", "one-sine"]),
             key("file", Kind::Path, Required, "\"quake.csv\"", "File of two columns, time in s and value; relative to the scene's file.").only_with("shape", &["table"]),
+            key("scale", Kind::Number(Range::ANY), Optional, "1.2", "Factor of the signal, 1 if left out: it multiplies all amplitudes that the signal does."),
         ],
     },
     TableSchema {

@@ -28,6 +28,7 @@ mod setting;
 mod setting_warning;
 mod simulate;
 mod source;
+pub mod statistics;
 pub mod sweep;
 mod timing;
 mod tradeoff;

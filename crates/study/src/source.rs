@@ -3,6 +3,7 @@
 
 use crate::Setting;
 use std::collections::BTreeMap;
+use teeter_scenario::ParsedScene;
 use teeter_scenario::diagnostic::Diagnostics;
 use teeter_scenario::resolve::{ReadFile, Resolved};
 
@@ -10,7 +11,8 @@ use teeter_scenario::resolve::{ReadFile, Resolved};
 #[derive(Debug, Clone)]
 pub struct StudyScene {
     bytes: Vec<u8>,
-    name: String,
+    /// Parsed once; or why it can't be.
+    parsed: Result<ParsedScene, Diagnostics>,
     stem: String,
     sets: Vec<(String, String)>,
     files: BTreeMap<String, Vec<u8>>,
@@ -29,9 +31,10 @@ impl StudyScene {
         sets: &[(String, String)],
         read: &mut ReadFile<'_>,
     ) -> Result<(Self, Resolved), Diagnostics> {
-        let resolved = teeter_scenario::load_with(&bytes, name, stem, sets, read)?;
+        let parsed = ParsedScene::new(&bytes, name)?;
+        let resolved = parsed.load(stem, sets, read)?;
         let files = resolved.files.iter().cloned().collect();
-        Ok((Self { bytes, name: name.to_owned(), stem: stem.to_owned(), sets: sets.to_vec(), files }, resolved))
+        Ok((Self { bytes, parsed: Ok(parsed), stem: stem.to_owned(), sets: sets.to_vec(), files }, resolved))
     }
 
     /// A scene that is run with many settings, some of which name files: all files that the scene
@@ -44,6 +47,7 @@ impl StudyScene {
         read: &mut ReadFile<'_>,
     ) -> Self {
         let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
+        let parsed = ParsedScene::new(&bytes, name);
         for setting in settings {
             let mut kept = |path: &str| match files.get(path) {
                 Some(bytes) => Ok(bytes.clone()),
@@ -54,9 +58,9 @@ impl StudyScene {
                 }
             };
             // What is wrong with a case is told where the case is run.
-            let _ = teeter_scenario::load_with(&bytes, name, stem, &setting.pairs(), &mut kept);
+            let _ = parsed.as_ref().map(|parsed| parsed.load(stem, &setting.pairs(), &mut kept));
         }
-        Self { bytes, name: name.to_owned(), stem: stem.to_owned(), sets: Vec::new(), files }
+        Self { bytes, parsed, stem: stem.to_owned(), sets: Vec::new(), files }
     }
 
     /// The bytes of the scene and of the files that it reads, in an order that depends on their
@@ -80,7 +84,7 @@ impl StudyScene {
             Some(bytes) => Ok(bytes.clone()),
             None => Err("was not read with the scene".to_owned()),
         };
-        teeter_scenario::load_with(&self.bytes, &self.name, &self.stem, &sets, &mut read)
+        self.parsed.as_ref().map_err(Clone::clone)?.load(&self.stem, &sets, &mut read)
     }
 
     /// The user's own settings.

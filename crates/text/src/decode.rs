@@ -49,10 +49,46 @@ pub struct Decoded {
     pub whole: bool,
 }
 
+/// The text of a file, parsed once: for a document that is decoded with many settings.
+#[derive(Debug, Clone)]
+pub struct ParsedText {
+    schema: &'static Schema,
+    source: SourceText,
+    parsed: syntax::Parsed,
+}
+
+impl ParsedText {
+    /// Parses a text; `file` is its name in messages. What is wrong is found by [`Self::decode`].
+    #[must_use]
+    pub fn new(schema: &'static Schema, source: &str, file: &str) -> Self {
+        let source = SourceText::new(file, source);
+        let parsed = syntax::read(schema, &source);
+        Self { schema, source, parsed }
+    }
+
+    /// Reads it with settings, as [`decode()`] does.
+    #[must_use]
+    pub fn decode(&self, sets: &[(String, String)]) -> Decoded {
+        decode_parsed(self.schema, self.source.clone(), self.parsed.clone(), sets)
+    }
+}
+
 /// Reads a document as [`parse`] does, going on after errors.
 pub fn decode(schema: &'static Schema, source: &str, file: &str, sets: &[(String, String)]) -> Decoded {
     let source = SourceText::new(file, source);
-    let syntax::Parsed { mut root, errors, bad_lines, complete } = syntax::read(schema, &source);
+    let parsed = syntax::read(schema, &source);
+    decode_parsed(schema, source, parsed, sets)
+}
+
+fn decode_parsed(
+    schema: &'static Schema,
+    source: SourceText,
+    parsed: syntax::Parsed,
+    sets: &[(String, String)],
+) -> Decoded {
+    let file = source.file.clone();
+    let file = file.as_str();
+    let syntax::Parsed { mut root, errors, bad_lines, complete } = parsed;
     let mut found = Diagnostics(errors);
     found.0.extend(sets::apply(schema, &mut root, sets, &source));
     if root.entries.is_empty() && found.0.is_empty() {

@@ -29,6 +29,7 @@ pub(crate) fn too_large(schema: &Schema, file: &str) -> Diagnostic {
 const MOST_ERRORS: usize = 50;
 
 /// A file as a tree, as far as it could be read.
+#[derive(Debug, Clone)]
 pub(crate) struct Parsed {
     pub(crate) root: Branch,
     pub(crate) errors: Vec<Diagnostic>,

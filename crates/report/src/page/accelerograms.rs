@@ -38,11 +38,43 @@ pub(super) fn histories(records: &[Arc<RecordScene>]) -> Option<Figure> {
     Some(figure)
 }
 
+/// Natural periods of the spectra, s: from 0.02 to 10, evenly on a logarithmic axis.
+#[must_use]
+pub fn spectrum_periods() -> Vec<f64> {
+    let ([low, high], count) = PERIODS;
+    (0..count).map(|k| low * (high / low).powf(k as f64 / (count - 1) as f64)).collect()
+}
+
+/// The figures of a record for files: `records.svg`, its motion over time, and `spectra.svg`, its
+/// response spectrum.
+#[must_use]
+pub fn record_figures(record: &Arc<RecordScene>) -> Vec<(String, String)> {
+    let records = std::slice::from_ref(record);
+    let figures = [("records.svg", histories(records)), ("spectra.svg", spectra(records))];
+    figures.into_iter().filter_map(|(name, figure)| Some((name.to_owned(), figure?.to_svg()))).collect()
+}
+
+/// A self-contained page of a record in the style of a run's report; `subtitle` says how it was
+/// corrected.
+#[must_use]
+pub fn record_page(record: &Arc<RecordScene>, title: &str, subtitle: &str) -> String {
+    let (title, subtitle) = (escaped(title), escaped(subtitle));
+    let section = section(std::slice::from_ref(record), &[RecordSummary::new(record)]);
+    format!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"color-scheme\" content=\"light dark\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
+         <title>{title}</title>\n<style>\n{}main {{ display: block; }}\n</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n\
+         <p id=\"subtitle\">{subtitle}</p>\n</header>\n<main>\n{section}</main>\n</body>\n</html>\n",
+        super::STYLE
+    )
+}
+
 /// Response spectra over the natural period; `None` without records.
 pub(super) fn spectra(records: &[Arc<RecordScene>]) -> Option<Figure> {
-    let ([low, high], count) = PERIODS;
-    let period = |k: usize| low * (high / low).powf(k as f64 / (count - 1) as f64);
-    let periods: Vec<f64> = (0..count).map(period).collect();
+    let [low, high] = PERIODS.0;
+    let periods = spectrum_periods();
     // A spectrum at periods of a thousandth of the record's step is refused: the ground's own.
     let responses: Vec<_> = records.iter().filter_map(|of| of.record.spectrum(DAMPING_RATIO, &periods).ok()).collect();
     if responses.is_empty() || responses.len() < records.len() {

@@ -17,6 +17,23 @@ const TURNS: [(&str, Given); 3] = [
     ("angular_acceleration", Given::Acceleration),
 ];
 
+/// What multiplies an amplitude.
+#[derive(Clone)]
+struct Factor {
+    history: History,
+    /// Of its signal.
+    scale: f64,
+}
+
+/// A load times a factor.
+fn scaled(kind: LoadKind, factor: f64) -> LoadKind {
+    match kind {
+        LoadKind::Point { at, force, couple } => LoadKind::Point { at, force: force * factor, couple: couple * factor },
+        LoadKind::Moving { force, at, speed } => LoadKind::Moving { force: force * factor, at, speed },
+        LoadKind::Distributed { load, from, to } => LoadKind::Distributed { load: load * factor, from, to },
+    }
+}
+
 impl Resolver<'_, '_> {
     /// The motion `owner.motion`; empty if there is no such table.
     pub(super) fn motion(&mut self, owner: &str, signals: &[Option<SignalScene>]) -> Option<MotionScene> {
@@ -91,7 +108,7 @@ impl Resolver<'_, '_> {
     }
 
     /// The histories of x and y: `signals`, or `signal` for both.
-    fn pair_of_signals(&mut self, path: &str, turns: bool, signals: &[Option<SignalScene>]) -> Option<[History; 2]> {
+    fn pair_of_signals(&mut self, path: &str, turns: bool, signals: &[Option<SignalScene>]) -> Option<[Factor; 2]> {
         let (one, two) = (format!("{path}.signal"), format!("{path}.signals"));
         let Some(names) = self.doc.text_pair(&two).map(|pair| pair.map(str::to_owned)) else {
             let history = self.history(&one, signals)?;
@@ -106,17 +123,20 @@ impl Resolver<'_, '_> {
     }
 
     /// The history named at a path; constant if none is given.
-    fn history(&mut self, path: &str, signals: &[Option<SignalScene>]) -> Option<History> {
+    fn history(&mut self, path: &str, signals: &[Option<SignalScene>]) -> Option<Factor> {
         match self.doc.text(path).map(str::to_owned) {
             Some(name) => self.named(path, &name, signals),
             None if self.doc.is_refused(path) => None,
-            None => Formula::constant(0.0).ok().map(History::Formula),
+            None => {
+                Formula::constant(0.0).ok().map(|constant| Factor { history: History::Formula(constant), scale: 1.0 })
+            }
         }
     }
 
-    fn named(&mut self, path: &str, name: &str, signals: &[Option<SignalScene>]) -> Option<History> {
+    fn named(&mut self, path: &str, name: &str, signals: &[Option<SignalScene>]) -> Option<Factor> {
         if let Some(number) = self.signals.get(name) {
-            return signals.get(*number)?.as_ref().map(|signal| signal.history.clone());
+            let signal = signals.get(*number)?.as_ref()?;
+            return Some(Factor { history: signal.history.clone(), scale: signal.scale });
         }
         if !self.doc.is_refused("signal") {
             let known = self.doc.names("signal");
@@ -132,7 +152,8 @@ impl Resolver<'_, '_> {
         None
     }
 
-    fn axis(&mut self, path: &str, given: Given, amplitude: f64, history: History) -> Option<AxisScene> {
+    fn axis(&mut self, path: &str, given: Given, amplitude: f64, factor: Factor) -> Option<AxisScene> {
+        let (amplitude, history) = (amplitude * factor.scale, factor.history);
         let jump = history.signal().jump().filter(|_| given == Given::Displacement && amplitude != 0.0);
         let end = self.doc.quantity("time.end").unwrap_or(f64::INFINITY);
         if let Some(t) = jump.filter(|t| *t <= end) {
@@ -188,7 +209,7 @@ impl Resolver<'_, '_> {
         let path = format!("force.{name}");
         let at = |key: &str| format!("{path}.{key}");
         let on = self.word(&at("on"));
-        let history = self.history(&at("signal"), signals);
+        let factor = self.history(&at("signal"), signals);
         let doc = self.doc;
         let (force, couple) = (doc.pair(&at("force")), doc.quantity(&at("couple")));
         if force.is_none() && couple.is_none() && !["force", "couple"].iter().any(|key| doc.is_refused(&at(key))) {
@@ -205,8 +226,9 @@ impl Resolver<'_, '_> {
             }
             return None;
         };
-        let (force, couple) = (force.unwrap_or_default(), couple.unwrap_or_default());
-        Some(ForceScene { name: name.to_owned(), block, force, couple, history: history? })
+        let Factor { history, scale } = factor?;
+        let (force, couple) = (force.unwrap_or_default().map(|part| part * scale), couple.unwrap_or_default() * scale);
+        Some(ForceScene { name: name.to_owned(), block, force, couple, history })
     }
 
     pub(super) fn load(
@@ -218,7 +240,7 @@ impl Resolver<'_, '_> {
         let path = format!("load.{name}");
         let at = |key: &str| format!("{path}.{key}");
         let on = self.word(&at("on"));
-        let history = self.history(&at("signal"), signals);
+        let factor = self.history(&at("signal"), signals);
         let on = on?;
         let Some(beam) = self.beams.get(on.as_str()).copied() else {
             if self.blocks.contains_key(on.as_str()) || on == "ground" {
@@ -242,7 +264,8 @@ impl Resolver<'_, '_> {
             self.error(&at("at"), rule, "give a place along the beam, from its left end");
             return None;
         }
-        Some(LoadScene { name: name.to_owned(), beam, kind, history: history? })
+        let Factor { history, scale } = factor?;
+        Some(LoadScene { name: name.to_owned(), beam, kind: scaled(kind, scale), history })
     }
 
     fn load_kind(&mut self, path: &str, span: Option<f64>) -> Option<LoadKind> {

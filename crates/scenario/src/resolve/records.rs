@@ -5,7 +5,18 @@ use crate::scene::{AxisScene, History, RecordScene};
 use crate::words::{Baseline, RecordUnit};
 use std::sync::Arc;
 use teeter_integrator::Given;
-use teeter_record::{ReadSettings, Record, RecordError};
+use teeter_record::{IntensityMeasure, ReadSettings, Record, RecordError};
+
+/// The keys that scale a record; at most one is given.
+const SCALINGS: [&str; 5] = ["scale", "peak", "peak_velocity", "arias", "spectral_acceleration"];
+
+/// How a record is scaled.
+enum Scaling {
+    /// By a factor.
+    Factor(f64),
+    /// To a value of an intensity measure, m/s² or m/s.
+    To(IntensityMeasure, f64),
+}
 
 impl Resolver<'_, '_> {
     /// The components x and y of a motion that are given by records; `None` on error.
@@ -35,10 +46,7 @@ impl Resolver<'_, '_> {
         let baseline = self.choice(&at("baseline"));
         let taper = self.number(&at("taper"));
         let (file, baseline, taper) = (file?, baseline?, taper?);
-        if doc.has(&at("scale")) && doc.has(&at("peak")) {
-            self.error(&at("peak"), "scale and peak both scale the record", "keep one of them");
-            return None;
-        }
+        let scaling = self.scaling(path)?;
         let settings = ReadSettings {
             step: doc.quantity(&at("step")),
             unit: unit.map(metres_per_second_squared),
@@ -66,10 +74,10 @@ impl Resolver<'_, '_> {
             Some(degree) => self.judged(path, "baseline", cut.baseline_corrected(degree))?,
         };
         let tapered = if taper > 0.0 { self.judged(path, "taper", corrected.tapered(taper))? } else { corrected };
-        let scaled = match (doc.number(&at("scale")), doc.quantity(&at("peak"))) {
-            (Some(factor), _) => self.judged(path, "scale", tapered.scaled(factor))?,
-            (None, Some(peak)) => self.judged(path, "peak", tapered.scaled_to_peak(peak))?,
-            (None, None) => tapered,
+        let scaled = match scaling {
+            Some((key, Scaling::Factor(factor))) => self.judged(path, key, tapered.scaled(factor))?,
+            Some((key, Scaling::To(measure, value))) => self.judged(path, key, tapered.scaled_to(measure, value))?,
+            None => tapered,
         };
         match RecordScene::new(path, &file, scaled) {
             Ok(record) => Some(record),
@@ -78,6 +86,39 @@ impl Resolver<'_, '_> {
                 None
             }
         }
+    }
+
+    /// How the record is scaled, and the key that says so; `None` on error.
+    fn scaling(&mut self, path: &str) -> Option<Option<(&'static str, Scaling)>> {
+        let at = |key: &str| format!("{path}.{key}");
+        let doc = self.doc;
+        let given: Vec<&'static str> = SCALINGS.into_iter().filter(|key| doc.has(&at(key))).collect();
+        if let [first, second, ..] = given[..] {
+            self.error(&at(second), format!("{first} and {second} both scale the record"), "keep one of them");
+            return None;
+        }
+        let spectral = given.contains(&"spectral_acceleration");
+        let period = doc.quantity(&at("period"));
+        if !spectral && doc.has(&at("period")) {
+            self.error(&at("period"), "no spectral_acceleration is given", "leave it out, or give both");
+            return None;
+        }
+        if spectral && period.is_none() {
+            if !doc.is_refused(&at("period")) {
+                let remedy = "add period, such as period = \"0.5 s\"";
+                self.error(&at("spectral_acceleration"), "of which natural period?", remedy);
+            }
+            return None;
+        }
+        let Some(key) = given.first().copied() else { return Some(None) };
+        let measure = match key {
+            "scale" => return Some(Some((key, Scaling::Factor(doc.number(&at(key))?)))),
+            "peak" => IntensityMeasure::PeakAcceleration,
+            "peak_velocity" => IntensityMeasure::PeakVelocity,
+            "arias" => IntensityMeasure::Arias,
+            _ => IntensityMeasure::SpectralAcceleration { period: period? },
+        };
+        Some(Some((key, Scaling::To(measure, doc.quantity(&at(key))?))))
     }
 
     /// What a step of reading or correcting gives; its error is reported at a key.
@@ -99,6 +140,7 @@ fn blamed<'k>(error: &RecordError, key: &'k str) -> &'k str {
         RecordError::StepTwice { .. } | RecordError::Step(_) => "step",
         RecordError::UnitTwice { .. } | RecordError::NotForFormat { what: "a unit", .. } => "unit",
         RecordError::NotForFormat { .. } | RecordError::Component { .. } => "component",
+        RecordError::Parameter { what: "the period", .. } => "period",
         _ => key,
     }
 }
@@ -113,7 +155,7 @@ fn remedy(error: &RecordError) -> &'static str {
         RecordError::Component { .. } => "name one of these",
         RecordError::Columns { .. } => "choose one of several accelerations by component = \"NAME\", or by its number",
         RecordError::Cut { .. } => "give times within the record, from before to",
-        RecordError::Still => "leave out peak, or use another record",
+        RecordError::Still => "leave out this key, or use another record",
         RecordError::Parameter { .. } => "choose a value in that range",
         RecordError::Uneven { .. } => {
             "a record must have a uniform step; for other tables use a signal of shape = \"table\""

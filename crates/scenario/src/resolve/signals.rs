@@ -29,7 +29,9 @@ impl Resolver<'_, '_> {
                 self.formula(&path, |this, path| this.with_frequency(path, Formula::one_sine))?
             }
         };
-        Some(SignalScene { name: name.to_owned(), history })
+        // Left out, so that scenes as run say no more than before.
+        let scale = if self.doc.has(&format!("{path}.scale")) { self.number(&format!("{path}.scale"))? } else { 1.0 };
+        Some(SignalScene { name: name.to_owned(), history, scale })
     }
 
     fn constant(&mut self, path: &str) -> Option<FormulaResult> {

@@ -91,6 +91,8 @@ pub struct SignalScene {
     pub name: String,
     /// Its history.
     pub history: History,
+    /// Factor of the amplitudes that it multiplies.
+    pub scale: f64,
 }
 
 /// The prescribed motion of one coordinate.

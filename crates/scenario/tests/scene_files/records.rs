@@ -173,6 +173,16 @@ fn errors_name_the_key_and_the_line_of_the_record() {
     refused("baseline = 'straight'", TABLE, &key("baseline"), &["none", "quintic"]);
     refused("scale = 2, peak = '1 gn'", TABLE, &key("peak"), &["scale and peak both scale the record"]);
     refused("peak = '1 gn'", "t,a\n0,0\n1,0\n", &key("peak"), &["0 throughout"]);
+    refused("arias = '1 m/s'", "t,a\n0,0\n1,0\n", &key("arias"), &["0 throughout"]);
+    refused("arias = '1 m/s', peak_velocity = '1 m/s'", TABLE, &key("arias"), &["peak_velocity and arias both scale"]);
+    refused("spectral_acceleration = '1 gn'", TABLE, &key("spectral_acceleration"), &["of which natural period?"]);
+    refused("period = '1 s'", TABLE, &key("period"), &["no spectral_acceleration is given"]);
+    refused(
+        "spectral_acceleration = '1 gn', period = '1 ns'",
+        TABLE,
+        &key("period"),
+        &["at least 1/1000 of the record's step"],
+    );
     refused("peak = '0.4 g'", TABLE, &key("peak"), &["an acceleration", "gn"]);
     refused("taper = 0.6", TABLE, &key("taper"), &["[0, 0.5]"]);
     refused("sacle = 2", TABLE, &key("sacle"), &["unknown key", "scale"]);
@@ -193,6 +203,15 @@ fn errors_name_the_key_and_the_line_of_the_record() {
     );
     both("[ground.motion]\nx = { scale = 1 }\n", &["ground.motion.x.record", "missing"]);
     both("[ground.motion]\nx = 'quake.at2'\n", &["ground.motion.x", "a table is expected"]);
+}
+
+#[test]
+fn a_record_is_scaled_to_any_intensity_measure() {
+    let near = |got: f64, wanted: f64| assert!((got / wanted - 1.0).abs() < 1e-13, "{got} {wanted}");
+    near(shaken("peak_velocity = '0.4 m/s'", TABLE).velocity_peak().size, 0.4);
+    near(shaken("arias = '0.7 m/s', baseline = 'mean'", TABLE).arias_intensity(), 0.7);
+    let spectral = shaken("spectral_acceleration = '0.5 gn', period = '2 s'", TABLE);
+    near(spectral.spectrum(0.05, &[2.0]).unwrap()[0].pseudo_acceleration(), 0.5 * STANDARD_GRAVITY);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Runs the cases of a study.
 
 use super::Sweep;
+use super::find::Found;
 use super::number::in_table;
 use super::output::{Columns, Output, quoted};
 use crate::{Failure, StudyScene, runner};
@@ -20,6 +21,8 @@ pub enum CaseStatus {
     Refused,
     /// Its run broke off without a result.
     Failed,
+    /// The limit that is searched isn't between the ends.
+    NoLimit,
 }
 
 impl CaseStatus {
@@ -30,13 +33,17 @@ impl CaseStatus {
             Self::Ran(ended) => ended.word(),
             Self::Refused => "refused",
             Self::Failed => "failed",
+            Self::NoLimit => "no-limit",
         }
     }
 
     /// Whether the case ran to its end.
     #[must_use]
     pub fn is_complete(self) -> bool {
-        !matches!(self, Self::Refused | Self::Failed | Self::Ran(EndedWord::Diverged | EndedWord::Unconverged))
+        !matches!(
+            self,
+            Self::Refused | Self::Failed | Self::NoLimit | Self::Ran(EndedWord::Diverged | EndedWord::Unconverged)
+        )
     }
 }
 
@@ -47,6 +54,8 @@ pub struct CaseRow {
     pub number: u64,
     /// How it ended.
     pub status: CaseStatus,
+    /// The limit that was searched.
+    pub(crate) found: Option<Found>,
     /// The outputs, as texts; empty where a case has none.
     pub outputs: Vec<String>,
     /// Steps whose contact problem was not solved to tolerance.
@@ -65,6 +74,12 @@ impl CaseRow {
             line.push(',');
             line.push_str(&quoted(&in_table(&key, &value)));
         }
+        if let Some(find) = sweep.find() {
+            for cell in self.found.as_ref().map(|found| found.cells(&find.key)).unwrap_or_default() {
+                line.push(',');
+                line.push_str(&quoted(&cell));
+            }
+        }
         for output in &self.outputs {
             line.push(',');
             line.push_str(output);
@@ -75,7 +90,14 @@ impl CaseRow {
     }
 
     fn without_outputs(number: u64, sweep: &Sweep, status: CaseStatus, error: String) -> Self {
-        Self { number, status, outputs: vec![String::new(); sweep.outputs().len()], unsolved_steps: 0, error }
+        let outputs = vec![String::new(); sweep.outputs().len()];
+        Self { number, status, found: None, outputs, unsolved_steps: 0, error }
+    }
+
+    /// How often the criterion of a search changed between the values scanned.
+    #[must_use]
+    pub fn changes(&self) -> u64 {
+        self.found.as_ref().map_or(0, |found| found.changes)
     }
 }
 
@@ -96,9 +118,50 @@ pub fn run_cases(
 
 /// The row of a case; `None` if it was cancelled.
 fn run_case(sweep: &Sweep, source: &StudyScene, number: u64, cancel: &Arc<AtomicBool>) -> Option<CaseRow> {
+    let Some(find) = sweep.find() else { return run_once(sweep, source, number, None, cancel) };
+    let column = find.until.column(sweep.outputs());
+    let decides = sweep.outputs().iter().position(|output| Some(output.name()) == column);
+    let mut unsolved_steps = 0;
+    let searched = find.search(|value| {
+        let Some(row) = run_once(sweep, source, number, Some(&value), cancel).map(Box::new) else { return Err(None) };
+        unsolved_steps += row.unsolved_steps;
+        let at = |why: &str| Box::new(CaseRow { error: format!("at {value}: {why}"), ..CaseRow::clone(&row) });
+        if !row.status.is_complete() {
+            return Err(Some(at(&row.error)));
+        }
+        let cell = decides.and_then(|place| row.outputs.get(place));
+        match cell.and_then(|cell| find.until.holds(cell)) {
+            Some(holds) => Ok((holds, Some(row))),
+            None => {
+                let row = at("the output that decides has no value");
+                Err(Some(Box::new(CaseRow { status: CaseStatus::Failed, ..*row })))
+            }
+        }
+    });
+    match searched {
+        Ok((found, row)) => row.map(|row| {
+            let (status, error) = match found.no_limit(find) {
+                Some(why) => (CaseStatus::NoLimit, why),
+                None => (row.status, row.error.clone()),
+            };
+            CaseRow { status, error, found: Some(found), unsolved_steps, ..*row }
+        }),
+        Err(row) => row.map(|row| CaseRow { outputs: vec![String::new(); row.outputs.len()], unsolved_steps, ..*row }),
+    }
+}
+
+/// The row of a run of a case, with this value of the key that is searched, if one is; `None` if it
+/// was cancelled.
+fn run_once(
+    sweep: &Sweep,
+    source: &StudyScene,
+    number: u64,
+    searched: Option<&str>,
+    cancel: &Arc<AtomicBool>,
+) -> Option<CaseRow> {
     let refused = |why: String| Some(CaseRow::without_outputs(number, sweep, CaseStatus::Refused, why));
     let failed = |why: String| Some(CaseRow::without_outputs(number, sweep, CaseStatus::Failed, why));
-    let resolved = match source.load(&sweep.setting(number)) {
+    let resolved = match source.load(&sweep.setting(number, searched)) {
         Ok(resolved) => resolved,
         Err(found) => return refused(Failure::from(found).to_string()),
     };
@@ -142,6 +205,7 @@ fn run_case(sweep: &Sweep, source: &StudyScene, number: u64, cancel: &Arc<Atomic
     Some(CaseRow {
         number,
         status: CaseStatus::Ran(word),
+        found: None,
         outputs,
         unsolved_steps: state.tally.unconverged_steps,
         error,

@@ -1,5 +1,7 @@
 //! Sweep files.
 
+use super::figures::{self, Wanted};
+use super::find::{self, Find};
 use super::number::WrittenNumber;
 use super::output::Output;
 use super::sample::{Distribution, Method, Sampler};
@@ -28,6 +30,8 @@ pub struct Sweep {
     /// Keys that vary on their own, and those that vary together; the last one varies fastest.
     axes: Vec<Axis>,
     samples: Option<Samples>,
+    find: Option<Find>,
+    wanted: Wanted,
     outputs: Vec<Output>,
 }
 
@@ -61,7 +65,8 @@ struct RandomKey {
     unit: WrittenNumber,
 }
 
-const TABLES: [&str; 5] = ["scene", "grid", "zip", "random", "outputs"];
+const TABLES: [&str; 9] =
+    ["scene", "grid", "zip", "random", "find", "outputs", "fragility", "distribution", "overturning"];
 const RANGE: [&str; 5] = ["from", "to", "count", "spacing", "files"];
 const DISTRIBUTIONS: [&str; 4] = ["uniform", "log_uniform", "normal", "log_normal"];
 const EXAMPLE: &str = "list the values, such as [\"1 mm\", \"2 mm\"], or give { from = \"1 mm\", to = \"9 mm\", count = 5 }, \
@@ -87,7 +92,14 @@ impl Sweep {
                 return Err(finding.into());
             }
         };
-        let mut sweep = Self { scene: String::new(), axes: Vec::new(), samples: None, outputs: Vec::new() };
+        let mut sweep = Self {
+            scene: String::new(),
+            axes: Vec::new(),
+            samples: None,
+            find: None,
+            wanted: Wanted::default(),
+            outputs: Vec::new(),
+        };
         let tables = entries(root.get_ref());
         // Files are listed as the scene names them, wherever in the file it is named.
         let scene = tables.iter().find(|(name, _)| *name == "scene").and_then(|(_, node)| node.text());
@@ -101,6 +113,10 @@ impl Sweep {
                 ("grid", Some(table)) => sweep.axes.extend(grid(&mut reader, table, "grid", files)),
                 ("zip", Some(table)) => sweep.axes.extend(together(&mut reader, table, &node, files)),
                 ("random", Some(table)) => sweep.samples = samples(&mut reader, table, &node),
+                ("find", Some(table)) => sweep.find = Find::read(&mut reader, table, &node),
+                (name, Some(table)) if figures::TABLES.contains(&name) => {
+                    sweep.wanted.read(&mut reader, name, table, &node);
+                }
                 ("outputs", Some(table)) => {
                     for (name, node) in entries(table) {
                         sweep.outputs.extend(Output::read(&mut reader, name, &node));
@@ -117,11 +133,15 @@ impl Sweep {
                 (other, _) => reader.unknown(other, &node, other, &TABLES),
             }
         }
+        if sweep.outputs.is_empty() && sweep.find.is_none() && sweep.wanted.is_empty() {
+            sweep.outputs.extend(DEFAULT_OUTPUTS.map(Output::summary));
+        }
+        if let Some(find) = &sweep.find {
+            find.until.claim(&mut reader, "find.until", &mut sweep.outputs);
+        }
+        sweep.wanted.claim(&mut reader, &mut sweep.outputs);
         if !reader.found.has_errors() {
             sweep.check(&mut reader);
-        }
-        if sweep.outputs.is_empty() {
-            sweep.outputs.extend(DEFAULT_OUTPUTS.map(Output::summary));
         }
         if reader.found.has_errors() { Err(reader.into_findings()) } else { Ok(sweep) }
     }
@@ -129,7 +149,7 @@ impl Sweep {
     /// The first case, and changes of it that take each key through all values that are not numbers:
     /// together they name every file that a case can read.
     pub fn settings_with_files(&self) -> impl Iterator<Item = Setting> + '_ {
-        let first = self.setting(0);
+        let first = self.setting(0, self.find.as_ref().map(Find::low_text).as_deref());
         let named = self.axes.iter().flat_map(|axis| {
             let words = |values: &[String]| values.iter().any(|value| WrittenNumber::read(value).is_none());
             let count = if axis.values.iter().any(|values| words(values)) { axis.len() } else { 0 };
@@ -148,7 +168,8 @@ impl Sweep {
     /// What is wrong with them.
     pub fn check_keys(&self, source: &StudyScene, file: &str) -> Result<(), Diagnostics> {
         let mut wrong = Diagnostics::default();
-        for (key, value) in self.case(0) {
+        let searched = self.find.iter().map(|find| (find.key.clone(), find.low_text()));
+        for (key, value) in self.case(0).into_iter().chain(searched) {
             if matches!(keys::find(&key), Some(PathTarget::Key(..))) {
                 continue;
             }
@@ -173,7 +194,7 @@ impl Sweep {
             reader.wrong("scene", None, "missing: which scene varies?", SCENE_EXAMPLE);
         }
         let keys = self.keys();
-        if keys.is_empty() {
+        if keys.is_empty() && self.find.is_none() {
             let remedy = "give keys with their values under [grid], [zip] or [random], such as \
                 contact.feet.friction = [0.3, 0.5] under [grid]";
             reader.wrong("", None, "nothing varies", remedy);
@@ -183,14 +204,21 @@ impl Sweep {
                 reader.wrong(key, None, "varies twice", "keep one of the two");
             }
         }
+        if let Some(find) = self.find.as_ref().filter(|find| keys.contains(&find.key.as_str())) {
+            reader.wrong(&find.key, None, "varies and is searched", "keep one of the two");
+        }
         let names: Vec<&str> = self.outputs.iter().map(Output::name).collect();
         for (place, name) in names.iter().enumerate() {
-            let reserved = RESERVED.contains(name) || keys.contains(name);
+            let searched = self.find.as_ref().is_some_and(|find| find.key == *name || find::COLUMNS.contains(name));
+            let reserved = searched || RESERVED.contains(name) || keys.contains(name);
             if reserved || names[..place].contains(name) {
                 let rule = "a column of that name is in the results already";
                 reader.wrong(&format!("outputs.{name}"), None, rule, "take another name");
             }
         }
+        let searched = self.find.iter().flat_map(|find| std::iter::once(find.key.as_str()).chain(find::COLUMNS));
+        let columns: Vec<&str> = keys.iter().copied().chain(searched).chain(names.iter().copied()).collect();
+        self.wanted.check(reader, &columns);
         if self.checked_cases().is_none_or(|cases| cases > MOST_CASES) {
             let rule = format!("more than {MOST_CASES} cases");
             reader.wrong("", None, &rule, "use fewer values, or random samples of the same keys");
@@ -257,10 +285,36 @@ impl Sweep {
         fixed
     }
 
-    /// A case as changes to the scene.
+    /// A case as changes to the scene, with this value of the key that is searched, if one is.
+    pub(crate) fn setting(&self, number: u64, searched: Option<&str>) -> Setting {
+        let fixed =
+            self.case(number).into_iter().fold(Setting::none(), |setting, (key, value)| setting.set(key, value));
+        match (&self.find, searched) {
+            (Some(find), Some(value)) => fixed.set(find.key.clone(), value),
+            _ => fixed,
+        }
+    }
+
+    /// The limit that is searched in each case.
+    pub(crate) fn find(&self) -> Option<&Find> {
+        self.find.as_ref()
+    }
+
+    /// What is to be made of the table.
+    pub(crate) fn wanted(&self) -> &Wanted {
+        &self.wanted
+    }
+
+    /// Whether figures are to be made of the table.
     #[must_use]
-    pub fn setting(&self, number: u64) -> Setting {
-        self.case(number).into_iter().fold(Setting::none(), |setting, (key, value)| setting.set(key, value))
+    pub fn wants_figures(&self) -> bool {
+        !self.wanted.is_empty()
+    }
+
+    /// Whether a limit is searched in each case without other values than those of the bisection.
+    #[must_use]
+    pub fn bisects_blindly(&self) -> bool {
+        self.find.as_ref().is_some_and(|find| !find.scans())
     }
 
     /// The names of the columns of the results.
@@ -268,7 +322,8 @@ impl Sweep {
     pub fn header(&self) -> String {
         let keys = self.keys();
         let outputs = self.outputs.iter().map(Output::name);
-        let names = std::iter::once("case").chain(keys.iter().copied()).chain(outputs).chain(LAST_COLUMNS);
+        let found = self.find.iter().flat_map(|find| std::iter::once(find.key.as_str()).chain(find::COLUMNS));
+        let names = std::iter::once("case").chain(keys.iter().copied()).chain(found).chain(outputs).chain(LAST_COLUMNS);
         names.map(super::output::quoted).collect::<Vec<_>>().join(",") + "\n"
     }
 }
@@ -403,7 +458,7 @@ fn values(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>, files: &List
     Some((0..count).map(|k| from.text_of(value(k))).collect())
 }
 
-fn end(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>) -> Option<WrittenNumber> {
+pub(crate) fn end(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>) -> Option<WrittenNumber> {
     let number = WrittenNumber::read(&reader.setting(node));
     if number.is_none() {
         reader.wrong(path, Some(node), "a number is expected, with the unit of its key", EXAMPLE);
@@ -411,7 +466,13 @@ fn end(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>) -> Option<Writt
     number
 }
 
-fn same_unit(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>, a: &WrittenNumber, b: &WrittenNumber) -> bool {
+pub(crate) fn same_unit(
+    reader: &mut Reader<'_>,
+    path: &str,
+    node: &Node<'_, '_>,
+    a: &WrittenNumber,
+    b: &WrittenNumber,
+) -> bool {
     if a.unit == b.unit {
         return true;
     }

@@ -3,6 +3,7 @@
 //! While a study runs its rows stand in a journal, in the order in which cases end; a kill loses
 //! at most the row that is being written. At the end they are sorted into `results.csv`.
 
+use super::figures::{Ensemble, FIGURE_FILES, StudyTable, TableError};
 use super::{IDENTITY, Sweep, SweepIdentity, SweepIdentityError};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -15,7 +16,17 @@ pub const RESULTS: &str = "results.csv";
 /// The rows of a study that hasn't.
 pub const JOURNAL: &str = "journal.csv";
 /// The files that a study may write, in the order in which they are removed.
-pub const FILES: [&str; 3] = [RESULTS, JOURNAL, IDENTITY];
+pub const FILES: [&str; FIGURE_FILES.len() + 3] = {
+    let mut all = [RESULTS; FIGURE_FILES.len() + 3];
+    let mut k = 0;
+    while k < FIGURE_FILES.len() {
+        all[k] = FIGURE_FILES[k];
+        k += 1;
+    }
+    all[k + 1] = JOURNAL;
+    all[k + 2] = IDENTITY;
+    all
+};
 
 /// Why rows can't be kept, continued or merged.
 #[derive(Debug, thiserror::Error)]
@@ -47,6 +58,14 @@ pub enum JournalError {
         folder: PathBuf,
         /// Number of cases without a row.
         missing: u64,
+    },
+    /// A table that can't be read back.
+    #[error("{}: {source}", path.display())]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: TableError,
     },
     /// Shards that are not there.
     #[error("shards are missing: {0}")]
@@ -258,4 +277,23 @@ pub fn merge(folders: &[PathBuf]) -> Result<(String, String), JournalError> {
     // The same sweep has the same columns.
     let header = texts.first().and_then(|text| text.split_inclusive('\n').next()).unwrap_or_default();
     Ok((table(header, &sorted(texts.iter().map(String::as_str))), study.as_whole().to_json()))
+}
+
+/// The study in a folder that has ended, under this name in figures.
+///
+/// # Errors
+/// If the folder holds none, or one that hasn't ended.
+pub fn ended_study(folder: &Path, name: &str) -> Result<Ensemble, JournalError> {
+    let place = folder.join(IDENTITY);
+    let text = fs::read_to_string(&place).map_err(io_error(&place))?;
+    let foreign = |source| JournalError::Foreign { folder: folder.to_owned(), source };
+    let identity = SweepIdentity::from_json(&text).map_err(foreign)?;
+    // The values are in the table; the files that a pattern once matched need not be here.
+    let as_written = |_: &str, pattern: &str| Ok(vec![pattern.to_owned()]);
+    let sweep =
+        Sweep::read(identity.sweep(), IDENTITY, &as_written).map_err(|_| foreign(SweepIdentityError::Unreadable))?;
+    let path = folder.join(RESULTS);
+    let rows = fs::read_to_string(&path).map_err(io_error(&path))?;
+    let table = StudyTable::read(&rows).map_err(|source| JournalError::Table { path, source })?;
+    Ok(Ensemble { name: name.to_owned(), sweep, table })
 }

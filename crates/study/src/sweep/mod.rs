@@ -8,7 +8,10 @@
 //! run of all cases.
 
 mod case;
+mod criterion;
+mod figures;
 mod file;
+mod find;
 mod identity;
 mod journal;
 mod listing;
@@ -19,9 +22,11 @@ mod shard;
 mod spec;
 
 pub use case::{CaseRow, CaseStatus, run_cases};
+pub use figures::{Ensemble, FIGURE_FILES, StudyFigure, StudyTable, TableError, study_figures, study_page};
 pub use file::{FilesOf, Sweep};
 pub use identity::{IDENTITY, SweepIdentity, SweepIdentityError};
-pub use journal::{FILES, JOURNAL, Journal, JournalError, RESULTS, merge, write_results};
+pub use journal::{FILES, JOURNAL, Journal, JournalError, RESULTS, ended_study, merge, write_results};
 pub use listing::matching_files;
 pub use output::Output;
+pub(crate) use sample::mixed;
 pub use shard::{Shard, ShardError};

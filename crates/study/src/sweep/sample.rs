@@ -167,7 +167,7 @@ fn unit(bits: u64) -> f64 {
 
 /// Mixes three numbers to one that looks random: SplitMix64 (Steele, Lea, Flood 2014, doi
 /// 10.1145/2714064.2660195), applied to each in turn.
-fn mixed(seed: u64, key: u64, sample: u64) -> u64 {
+pub(crate) fn mixed(seed: u64, key: u64, sample: u64) -> u64 {
     [seed, key, sample].into_iter().fold(0, |state: u64, next| {
         let mut z = (state ^ next).wrapping_add(0x9E37_79B9_7F4A_7C15);
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);

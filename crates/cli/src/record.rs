@@ -1,0 +1,234 @@
+//! `teeter record`.
+
+use crate::console::{Console, print};
+use crate::render::Presenter;
+use crate::run::Exit;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use teeter_record::{Record, STANDARD_GRAVITY};
+use teeter_report::{RecordSummary, Results, record_figures, record_page, spectrum_periods};
+use teeter_scenario::diagnostic::Diagnostics;
+use teeter_scenario::record_alone;
+use teeter_scenario::scene::RecordScene;
+
+/// All files that it may write.
+const FILES: [&str; 5] = ["record.json", "record.csv", "record.html", "figures/records.svg", "figures/spectra.svg"];
+
+/// Damping ratio of the spectrum.
+const DAMPING_RATIO: f64 = 0.05;
+
+/// Natural periods of the spectrum that are printed, s.
+const PRINTED_PERIODS: [f64; 8] = [0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0];
+
+#[derive(Debug)]
+pub(crate) struct Options {
+    pub(crate) file: PathBuf,
+    /// The corrections, by the keys of a recorded motion in a scene.
+    pub(crate) keys: Vec<(String, String)>,
+    pub(crate) json: bool,
+    pub(crate) out: Option<PathBuf>,
+    pub(crate) force: bool,
+}
+
+pub(crate) fn record(options: &Options) -> Exit {
+    let console = Console::new(false);
+    let name = options.file.display().to_string();
+    let refused = |text: &str| {
+        console.error(text);
+        Exit::BadInput
+    };
+    let found = match read(&options.file).map_err(|why| Diagnostics::from(why.about(&name))) {
+        Ok(bytes) => record_alone(&name, &bytes, &options.keys),
+        Err(found) => Err(found),
+    };
+    let scene = match found {
+        Ok(scene) => scene,
+        Err(found) => return refused(&Presenter::new("").all(&found)),
+    };
+    let held = Held::new(&name, &scene, &options.keys);
+    let results = match &options.out {
+        None => None,
+        Some(folder) => {
+            let free = Results::spares(&FILES, folder, std::slice::from_ref(&options.file))
+                .and_then(|()| Results::create_of(&FILES, folder, options.force));
+            match free {
+                Ok(results) => Some(results),
+                Err(error) => return refused(&format!("error: {error}")),
+            }
+        }
+    };
+    let text = if options.json { held.json_text() } else { held.text() };
+    let written = results.map_or(Ok(()), |results| held.write(&results).map_err(|error| error.to_string()));
+    match print(&text).and(written) {
+        Ok(()) => Exit::FinishedRun,
+        Err(why) => {
+            console.error(&format!("error: {why}"));
+            Exit::Failed
+        }
+    }
+}
+
+/// Why a file can't be read.
+struct Unreadable(String);
+
+impl Unreadable {
+    fn about(self, name: &str) -> teeter_scenario::diagnostic::Diagnostic {
+        teeter_scenario::diagnostic::Diagnostic::error(name, self.0)
+    }
+}
+
+/// The file: of one that is too large, only enough for the reader to refuse it.
+fn read(path: &Path) -> Result<Vec<u8>, Unreadable> {
+    use std::io::Read;
+    let unreadable = |error: std::io::Error| Unreadable(format!("the record can't be read: {error}"));
+    if path.is_dir() {
+        return Err(Unreadable("is a folder, not a record".to_owned()));
+    }
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(unreadable)?;
+    file.take(teeter_record::LARGEST_FILE as u64 + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    Ok(bytes)
+}
+
+/// What a record holds, as used.
+struct Held<'a> {
+    name: &'a str,
+    scene: &'a Arc<RecordScene>,
+    keys: &'a [(String, String)],
+    numbers: RecordSummary,
+}
+
+impl<'a> Held<'a> {
+    fn new(name: &'a str, scene: &'a Arc<RecordScene>, keys: &'a [(String, String)]) -> Self {
+        Self { name, scene, keys, numbers: RecordSummary::new(scene) }
+    }
+
+    fn record(&self) -> &Record {
+        &self.scene.record
+    }
+
+    /// Velocity and displacement after the last value.
+    fn left_over(&self) -> [f64; 2] {
+        let (velocities, displacements) = self.record().motion();
+        [velocities, displacements].map(|values| values.last().copied().unwrap_or(0.0))
+    }
+
+    /// The corrections in words; empty for none.
+    fn corrections(&self) -> String {
+        self.keys.iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ")
+    }
+
+    fn text(&self) -> String {
+        let (record, numbers) = (self.record(), &self.numbers);
+        let [a, v, d] = [record.acceleration_peak(), record.velocity_peak(), record.displacement_peak()];
+        let [velocity, displacement] = self.left_over();
+        let mut lines = vec![
+            [self.name, &numbers.station, &numbers.description]
+                .into_iter()
+                .filter(|part| !part.is_empty())
+                .collect::<Vec<_>>()
+                .join(", "),
+        ];
+        let mut row = |name: &str, text: String| lines.push(format!("  {name:<22}{text}"));
+        row("values", format!("{}, every {} s, over {:.6} s", record.len(), record.dt(), record.duration()));
+        if !self.keys.is_empty() {
+            row("corrections", self.corrections());
+        }
+        let peak = format!("{:.5} m/s^2 = {:.7} gn at {:.4} s", a.size, a.size / STANDARD_GRAVITY, a.time);
+        row("peak acceleration", peak);
+        row("peak velocity", format!("{:.6} m/s at {:.4} s", v.size, v.time));
+        row("peak displacement", format!("{:.6} m at {:.4} s", d.size, d.time));
+        let arias = format!(
+            "{:.6} m/s, linear between values; {:.10} m/s by the plain sum",
+            numbers.arias_intensity,
+            record.arias_sum()
+        );
+        row("Arias intensity", arias);
+        match record.husid_times([0.05, 0.95]) {
+            Ok([from, to]) => row("5 % to 95 % of it", format!("{:.3} s, from {from:.3} s to {to:.3} s", to - from)),
+            Err(why) => row("5 % to 95 % of it", why.to_string()),
+        }
+        row("at the end", format!("velocity {velocity:.6} m/s, displacement {displacement:.6} m"));
+        if let Ok(responses) = record.spectrum(DAMPING_RATIO, &PRINTED_PERIODS) {
+            row("spectrum, 5 % damping", "period T, pseudo-acceleration Sa, displacement Sd".to_owned());
+            for of in responses {
+                let (sa, sd) = (of.pseudo_acceleration(), 1e3 * of.displacement);
+                row("", format!("{:>4} s {sa:>12.5} m/s^2 {sd:>12.4} mm", of.period));
+            }
+        }
+        lines.join("\n") + "\n"
+    }
+
+    fn json(&self) -> Value {
+        let record = self.record();
+        let [velocity, displacement] = self.left_over();
+        let mut value = serde_json::to_value(&self.numbers).unwrap_or_default();
+        let peaks = [record.acceleration_peak(), record.velocity_peak(), record.displacement_peak()];
+        let periods = spectrum_periods();
+        let spectrum: Vec<Value> = record
+            .spectrum(DAMPING_RATIO, &periods)
+            .unwrap_or_default()
+            .iter()
+            .map(|of| {
+                json!({
+                    "period": of.period,
+                    "pseudo_acceleration": of.pseudo_acceleration(),
+                    "displacement": of.displacement,
+                    "velocity": of.velocity,
+                    "acceleration": of.acceleration,
+                })
+            })
+            .collect();
+        let more = json!({
+            "file": self.name,
+            "values": record.len(),
+            "corrections": self.keys.iter().map(|(key, value)| (key.clone(), json!(value))).collect::<serde_json::Map<_, _>>(),
+            "peak_acceleration_gn": peaks[0].size / STANDARD_GRAVITY,
+            "peak_acceleration_time": peaks[0].time,
+            "peak_velocity_time": peaks[1].time,
+            "peak_displacement_time": peaks[2].time,
+            "arias_sum": record.arias_sum(),
+            "significant": record.husid_times([0.05, 0.95]).ok(),
+            "final_velocity": velocity,
+            "final_displacement": displacement,
+            "damping_ratio": DAMPING_RATIO,
+            "spectrum": spectrum,
+        });
+        if let (Some(value), Value::Object(more)) = (value.as_object_mut(), more) {
+            // It names the place in a scene, and here there is none.
+            value.remove("motion");
+            value.extend(more);
+        }
+        value
+    }
+
+    fn json_text(&self) -> String {
+        format!("{:#}\n", self.json())
+    }
+
+    fn csv(&self) -> String {
+        let record = self.record();
+        let (velocities, displacements) = record.motion();
+        let mut text = String::from("t,a,v,d\n");
+        for (k, a) in record.accelerations().iter().enumerate() {
+            let (v, d) = (velocities.get(k).copied().unwrap_or(0.0), displacements.get(k).copied().unwrap_or(0.0));
+            text.push_str(&format!("{:?},{a:?},{v:?},{d:?}\n", record.time(k)));
+        }
+        text
+    }
+
+    fn write(&self, results: &Results) -> Result<(), teeter_report::ResultsError> {
+        results.write("record.csv", self.csv())?;
+        for (name, svg) in record_figures(self.scene) {
+            results.write(&format!("figures/{name}"), svg)?;
+        }
+        let corrections = match self.corrections() {
+            none if none.is_empty() => "as recorded".to_owned(),
+            some => some,
+        };
+        let title = Path::new(self.name).file_name().map_or_else(|| self.name.into(), |name| name.to_string_lossy());
+        results.write("record.html", record_page(self.scene, &title, &corrections))?;
+        results.write("record.json", self.json_text())
+    }
+}

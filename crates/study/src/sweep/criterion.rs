@@ -1,0 +1,96 @@
+//! What is asked of a case: whether a block overturned, or an output passed a value.
+
+use super::output::Output;
+use super::spec::{Node, Reader, entries};
+
+/// The place in the summary that tells whether a block overturned.
+const OVERTURNED_AT: &str = "overturned_at";
+
+/// A yes or no about a case that ran.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Criterion {
+    /// A block overturned.
+    Overturned,
+    /// An output is above a value.
+    Above {
+        /// The name of the output.
+        output: String,
+        /// The value, in SI units.
+        value: f64,
+    },
+}
+
+const WORDS: [&str; 2] = ["output", "above"];
+const EXAMPLE: &str = "write \"overturned\", or the name of an output and a number in SI units, such as { output = \"largest\", above = 0.2 }";
+
+impl Criterion {
+    /// Reads `"overturned"` or `{ output = "largest", above = 0.2 }`.
+    pub(crate) fn read(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>) -> Option<Self> {
+        if node.text() == Some("overturned") {
+            return Some(Self::Overturned);
+        }
+        let Some(table) = node.table() else {
+            reader.wrong(path, Some(node), "\"overturned\", or an output with a value is expected", EXAMPLE);
+            return None;
+        };
+        let (mut output, mut above) = (None, None);
+        for (word, value) in entries(table) {
+            match word {
+                "output" => output = value.text().map(str::to_owned),
+                "above" => {
+                    above = reader.written(&value).replace('_', "").parse::<f64>().ok().filter(|x| x.is_finite())
+                }
+                other => {
+                    reader.unknown(&format!("{path}.{other}"), &value, other, &WORDS);
+                    return None;
+                }
+            }
+        }
+        let (Some(output), Some(value)) = (output, above) else {
+            reader.wrong(path, Some(node), "an output and a number are expected", EXAMPLE);
+            return None;
+        };
+        Some(Self::Above { output, value })
+    }
+
+    /// Its meaning, for figures and columns.
+    pub(crate) fn words(&self) -> String {
+        match self {
+            Self::Overturned => "overturned".to_owned(),
+            Self::Above { output, value } => format!("{output} above {value}"),
+        }
+    }
+
+    /// Adds the output that it needs, if there is none yet; refuses one that isn't there.
+    pub(crate) fn claim(&self, reader: &mut Reader<'_>, path: &str, outputs: &mut Vec<Output>) {
+        match self {
+            Self::Overturned => {
+                if !outputs.iter().any(|output| output.summary_path() == Some(OVERTURNED_AT)) {
+                    outputs.push(Output::summary(OVERTURNED_AT));
+                }
+            }
+            Self::Above { output, .. } => {
+                if !outputs.iter().any(|known| known.name() == output) {
+                    reader.wrong(path, None, &format!("there is no output `{output}`"), "define it under [outputs]");
+                }
+            }
+        }
+    }
+
+    /// The name of the column that decides.
+    pub(crate) fn column<'o>(&self, outputs: &'o [Output]) -> Option<&'o str> {
+        let ours = |output: &&Output| match self {
+            Self::Overturned => output.summary_path() == Some(OVERTURNED_AT),
+            Self::Above { output: name, .. } => output.name() == name,
+        };
+        outputs.iter().find(ours).map(Output::name)
+    }
+
+    /// Whether it holds, by the cell of its column; `None` where the cell doesn't say.
+    pub(crate) fn holds(&self, cell: &str) -> Option<bool> {
+        match self {
+            Self::Overturned => Some(!cell.is_empty()),
+            Self::Above { value, .. } => cell.parse::<f64>().ok().map(|number| number > *value),
+        }
+    }
+}

@@ -1,0 +1,360 @@
+//! Fragility curves.
+
+use super::super::criterion::Criterion;
+use super::super::spec::{Node, Reader, entries};
+use super::{Ensemble, StudyFigure, axis_label, digits, text};
+use crate::statistics::{LognormalFit, NoFit, Observation, interval, resamples};
+use crate::write::quoted;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use teeter_plot::{Axis, AxisError, Figure, Legend, Mark, Panel, Series};
+use toml::de::DeTable;
+
+/// `[fragility]` of a sweep file.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Fragility {
+    pub(crate) event: Criterion,
+    /// Columns; a curve over each.
+    pub(crate) intensities: Vec<String>,
+    /// Their labels on the axes; as many, or none.
+    labels: Vec<String>,
+}
+
+const WORDS: [&str; 3] = ["event", "intensity", "label"];
+const EXAMPLE: &str = "such as event = \"overturned\" and intensity = \"ground.motion.x.peak\"";
+
+/// Figures of a study: one for each intensity.
+const MOST_INTENSITIES: usize = 4;
+/// Of what the intervals hold the middle.
+const CONFIDENCE: f64 = 0.95;
+const RESAMPLES: u64 = 1000;
+const SEED: u64 = 20_150_521;
+/// Points of a curve in its table and figure.
+const POINTS: usize = 121;
+/// Different intensities up to which shares are those at each; above, those of groups.
+const MOST_STRIPES: usize = 40;
+/// Groups of equally many cases for clouds.
+const GROUPS: usize = 10;
+
+impl Fragility {
+    pub(super) fn read(reader: &mut Reader<'_>, table: &DeTable<'_>, node: &Node<'_, '_>) -> Option<Self> {
+        let (mut event, mut intensities, mut labels) = (None, Vec::new(), Vec::new());
+        for (word, value) in entries(table) {
+            let path = format!("fragility.{word}");
+            match word {
+                "event" => event = Some(Criterion::read(reader, &path, &value)?),
+                "intensity" | "label" => {
+                    let items = value.array().unwrap_or_else(|| vec![value]);
+                    let texts =
+                        items.iter().map(|item| text(reader, &path, item, EXAMPLE)).collect::<Option<Vec<_>>>()?;
+                    if word == "label" { labels = texts } else { intensities = texts }
+                }
+                other => {
+                    reader.unknown(&path, &value, other, &WORDS);
+                    return None;
+                }
+            }
+        }
+        let (Some(event), false) = (event, intensities.is_empty()) else {
+            reader.wrong("fragility", Some(node), "event and intensity belong together", EXAMPLE);
+            return None;
+        };
+        if intensities.len() > MOST_INTENSITIES {
+            let rule = format!("at most {MOST_INTENSITIES} intensities");
+            reader.wrong("fragility.intensity", Some(node), &rule, "leave some out");
+            return None;
+        }
+        if !labels.is_empty() && labels.len() != intensities.len() {
+            reader.wrong("fragility.label", Some(node), "a label for each intensity is expected", "or leave it out");
+            return None;
+        }
+        Some(Self { event, intensities, labels })
+    }
+
+    fn label(&self, place: usize) -> String {
+        let column = self.intensities.get(place).map(String::as_str).unwrap_or_default();
+        self.labels.get(place).cloned().unwrap_or_else(|| axis_label(column))
+    }
+}
+
+/// The observations of a study, with the group of each: cases that differ in the intensity alone,
+/// such as the runs with one record.
+struct Seen {
+    observations: Vec<Observation>,
+    /// By group, in the order of the groups' names.
+    groups: Vec<Vec<Observation>>,
+    names: Vec<String>,
+}
+
+impl Seen {
+    fn of(study: &Ensemble, asked: &Fragility, column: &str) -> Self {
+        let event = asked.event.column(study.sweep.outputs()).unwrap_or_default();
+        let cells = study.table.completed(event);
+        let intensities = study.table.numbers(column);
+        let keys = study.sweep.keys();
+        // Over an output each case has its own intensity, and runs of one record belong together.
+        let scaled: Vec<&str> =
+            asked.intensities.iter().map(String::as_str).filter(|name| keys.contains(name)).collect();
+        let others: Vec<Vec<&str>> =
+            keys.iter().filter(|key| !scaled.contains(key)).map(|key| study.table.completed(key)).collect();
+        let mut groups: BTreeMap<String, Vec<Observation>> = BTreeMap::new();
+        let mut observations = Vec::new();
+        for (k, (cell, intensity)) in cells.iter().zip(&intensities).enumerate() {
+            let Some(event) = asked.event.holds(cell).filter(|_| intensity.is_finite()) else { continue };
+            let seen = Observation { intensity: *intensity, event };
+            observations.push(seen);
+            let alone = || k.to_string();
+            let name = others.iter().filter_map(|column| column.get(k).copied()).collect::<Vec<_>>().join("\u{1f}");
+            groups.entry(if others.is_empty() { alone() } else { name }).or_default().push(seen);
+        }
+        let (names, groups) = groups.into_iter().unzip();
+        Self { observations, groups, names }
+    }
+
+    /// Fits of resampled groups, in the order of the draws.
+    fn resampled(&self) -> Vec<Option<LognormalFit>> {
+        let fit = |draw: Vec<usize>| {
+            let drawn: Vec<Observation> =
+                draw.iter().filter_map(|group| self.groups.get(*group)).flatten().copied().collect();
+            LognormalFit::of(&drawn).ok()
+        };
+        resamples(self.groups.len(), RESAMPLES, SEED).map(fit).collect()
+    }
+
+    /// Intensity, cases and events: at each intensity, or in groups of equally many cases.
+    fn shares(&self) -> Vec<(f64, usize, usize)> {
+        let mut sorted = self.observations.clone();
+        sorted.sort_by(|a, b| a.intensity.total_cmp(&b.intensity));
+        let count = |part: &[Observation]| {
+            let mean = part.iter().map(|seen| seen.intensity.ln()).sum::<f64>() / part.len() as f64;
+            let one = part.iter().all(|seen| seen.intensity == part[0].intensity);
+            let middle = if one { part[0].intensity } else { mean.exp() };
+            (middle, part.len(), part.iter().filter(|seen| seen.event).count())
+        };
+        let stripes: Vec<_> = sorted.chunk_by(|a, b| a.intensity == b.intensity).map(count).collect();
+        if stripes.len() <= MOST_STRIPES {
+            return stripes;
+        }
+        sorted.chunks(sorted.len().div_ceil(GROUPS)).map(count).collect()
+    }
+}
+
+/// A curve with its confidence.
+struct Curve {
+    seen: Seen,
+    fit: Result<LognormalFit, NoFit>,
+    resampled: Vec<Option<LognormalFit>>,
+}
+
+impl Curve {
+    fn of(seen: Seen) -> Self {
+        let fit = LognormalFit::of(&seen.observations);
+        let resampled = if fit.is_ok() { seen.resampled() } else { Vec::new() };
+        Self { seen, fit, resampled }
+    }
+
+    fn fits(&self) -> impl Iterator<Item = &LognormalFit> {
+        self.resampled.iter().flatten()
+    }
+
+    fn band(&self, of: impl Fn(&LognormalFit) -> f64) -> [f64; 2] {
+        interval(self.fits().map(of).collect(), CONFIDENCE).unwrap_or([f64::NAN; 2])
+    }
+
+    /// The ratio of medians, other over this, with its interval: groups of the same names are drawn
+    /// together.
+    fn ratio(&self, other: &Self) -> Option<(f64, [f64; 2], bool)> {
+        let (ours, theirs) = (self.fit.as_ref().ok()?, other.fit.as_ref().ok()?);
+        let paired = self.seen.names == other.seen.names;
+        let mut of_others: Vec<Option<LognormalFit>> = other.resampled.clone();
+        if !paired {
+            // Independent draws: any other order than ours.
+            of_others.rotate_left(1);
+        }
+        let both = self.resampled.iter().zip(&of_others);
+        let ratios = both.filter_map(|(a, b)| Some(b.as_ref()?.median / a.as_ref()?.median)).collect();
+        Some((theirs.median / ours.median, interval(ratios, CONFIDENCE)?, paired))
+    }
+}
+
+/// The figure of one study, or of several side by side.
+pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
+    let mut parts = Parts::default();
+    let mut panels = Vec::new();
+    let asked: Vec<&Fragility> = studies.iter().filter_map(|study| study.sweep.wanted().fragility.as_ref()).collect();
+    let places = asked.iter().map(|asked| asked.intensities.len()).min().unwrap_or(0);
+    for place in 0..places {
+        let curves: Vec<Curve> = studies
+            .iter()
+            .zip(&asked)
+            .map(|(study, asked)| Curve::of(Seen::of(study, asked, &asked.intensities[place])))
+            .collect();
+        let label = asked.first().map(|asked| asked.label(place)).unwrap_or_default();
+        panels.push((label.clone(), parts.panel(studies, &label, &curves)?));
+        parts.compared(studies, &label, &curves);
+    }
+    let mut notes = parts.notes;
+    notes.push(format!(
+        "P(event | x) = Φ(ln(x/θ)/β) by maximum likelihood over all cases. Bands and intervals hold {} % of {RESAMPLES} fits to \
+         groups drawn with replacement; a group is the cases with one record (all keys but the intensity the same), as runs \
+         of one record are not independent.",
+        100.0 * CONFIDENCE
+    ));
+    let event = asked.first().map(|asked| asked.event.words()).unwrap_or_default();
+    let title = format!("Fragility: probability of `{event}`");
+    let mut all = panels.into_iter();
+    let (_, (axis, panel)) = match all.next() {
+        Some(first) => first,
+        None => (String::new(), (Axis::between("", 0.0, 1.0), Panel::new(Axis::between("", 0.0, 1.0)))),
+    };
+    let figure = Figure::new("fragility", title.clone(), axis).legend(Legend::Rows).panel(panel);
+    let more: Vec<_> = (2..)
+        .zip(all)
+        .map(|(k, (label, (axis, panel)))| {
+            (label, Figure::new(&format!("fragility-{k}"), title.clone(), axis).legend(Legend::Rows).panel(panel))
+        })
+        .collect();
+    Ok(StudyFigure {
+        name: "fragility",
+        title,
+        figure,
+        more,
+        tables: vec![
+            ("fragility.csv", parts.fits),
+            ("fragility_curves.csv", parts.curves),
+            ("fragility_data.csv", parts.data),
+        ],
+        notes,
+        summary: (
+            vec!["Study", "Intensity", "Median θ", "95 %", "Dispersion β", "95 %", "Cases", "Events", "Records"],
+            parts.rows,
+        ),
+    })
+}
+
+/// The tables and sentences, as they grow.
+struct Parts {
+    fits: String,
+    curves: String,
+    data: String,
+    notes: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Default for Parts {
+    fn default() -> Self {
+        Self {
+            fits: "study,intensity,median,median_low,median_high,beta,beta_low,beta_high,log_likelihood,cases,events,\
+                groups,resamples,resamples_without_fit,error\n"
+                .to_owned(),
+            curves: "study,intensity,x,probability,low,high\n".to_owned(),
+            data: "study,intensity,x,cases,events\n".to_owned(),
+            notes: Vec::new(),
+            rows: Vec::new(),
+        }
+    }
+}
+
+impl Parts {
+    fn panel(&mut self, studies: &[Ensemble], label: &str, curves: &[Curve]) -> Result<(Axis, Panel), AxisError> {
+        let observed = curves.iter().flat_map(|curve| curve.seen.observations.iter().map(|seen| seen.intensity));
+        let positive: Vec<f64> = observed.filter(|x| *x > 0.0).collect();
+        let (low, high) = (
+            positive.iter().copied().reduce(f64::min).unwrap_or(0.1),
+            positive.iter().copied().reduce(f64::max).unwrap_or(1.0),
+        );
+        let axis = Axis::logarithmic(label, [low, high])?;
+        let grid: Vec<f64> = (0..POINTS).map(|k| low * (high / low).powf(k as f64 / (POINTS - 1) as f64)).collect();
+        let mut series = Vec::new();
+        for (number, (study, curve)) in studies.iter().zip(curves).enumerate() {
+            let start = format!("{},{}", quoted(&study.name), quoted(label));
+            let shares = curve.seen.shares();
+            for (x, cases, events) in &shares {
+                let _ = writeln!(self.data, "{start},{x:?},{cases},{events}");
+            }
+            self.fit(study, label, curve, &start);
+            let points = shares.iter().map(|(x, cases, events)| (*x, *events as f64 / *cases as f64));
+            if let Ok(fit) = &curve.fit {
+                let bands: Vec<(f64, f64, f64)> = grid
+                    .iter()
+                    .map(|&x| {
+                        let [low, high] = curve.band(|fit| fit.probability(x));
+                        let _ = writeln!(self.curves, "{start},{x:?},{:?},{low:?},{high:?}", fit.probability(x));
+                        (x, low, high)
+                    })
+                    .collect();
+                series.push(Series::area("", bands).number(number));
+                let line = grid.iter().map(|&x| (x, fit.probability(x)));
+                series.push(Series::line(study.name.clone(), line.collect::<Vec<_>>()).number(number));
+            }
+            let name = if curve.fit.is_ok() { "" } else { study.name.as_str() };
+            series.push(Series::marks(name, points.collect::<Vec<_>>(), Mark::of(number)).number(number));
+        }
+        Ok((axis, Panel::new(Axis::between("Probability", 0.0, 1.0)).with(series)))
+    }
+
+    fn fit(&mut self, study: &Ensemble, label: &str, curve: &Curve, start: &str) {
+        let (cases, groups) = (curve.seen.observations.len(), curve.seen.groups.len());
+        let events = curve.seen.observations.iter().filter(|seen| seen.event).count();
+        let failed = curve.resampled.iter().filter(|fit| fit.is_none()).count();
+        match &curve.fit {
+            Ok(fit) => {
+                let ([a, b], [c, d]) = (curve.band(|fit| fit.median), curve.band(|fit| fit.beta));
+                let LognormalFit { median, beta, log_likelihood } = fit;
+                let _ = writeln!(
+                    self.fits,
+                    "{start},{median:?},{a:?},{b:?},{beta:?},{c:?},{d:?},{log_likelihood:?},{cases},{events},{groups},\
+                     {RESAMPLES},{failed},"
+                );
+                let range = |low: f64, high: f64| format!("{} to {}", digits(low), digits(high));
+                self.rows.push(vec![
+                    study.name.clone(),
+                    label.to_owned(),
+                    digits(*median),
+                    range(a, b),
+                    digits(*beta),
+                    range(c, d),
+                    cases.to_string(),
+                    events.to_string(),
+                    groups.to_string(),
+                ]);
+                if failed > 0 {
+                    self.notes.push(format!(
+                        "{}, {label}: {failed} of {RESAMPLES} resamples have no fit and are left out of the intervals, which \
+                         are too narrow then.",
+                        study.name
+                    ));
+                }
+            }
+            Err(why) => {
+                let _ =
+                    writeln!(self.fits, "{start},,,,,,,,{cases},{events},{groups},0,0,{}", quoted(&why.to_string()));
+                self.notes.push(format!("{}, {label}: no curve: {why}.", study.name));
+            }
+        }
+        if study.table.incomplete() > 0 {
+            let note = format!("{}: {} cases without a result are left out.", study.name, study.table.incomplete());
+            if !self.notes.contains(&note) {
+                self.notes.push(note);
+            }
+        }
+    }
+
+    /// The ratios of medians to that of the first study.
+    fn compared(&mut self, studies: &[Ensemble], label: &str, curves: &[Curve]) {
+        let (Some((first, rest)), Some(study)) = (curves.split_first(), studies.first()) else { return };
+        for (other, curve) in studies.iter().skip(1).zip(rest) {
+            let Some((ratio, [low, high], paired)) = first.ratio(curve) else { continue };
+            let says = if low > 1.0 || high < 1.0 { "the medians differ" } else { "the medians can't be told apart" };
+            let drawn = if paired { "the same records drawn for both" } else { "drawn independently" };
+            self.notes.push(format!(
+                "{label}: the median of {} is {} times that of {}, 95 % from {} to {} ({drawn}): {says}.",
+                other.name,
+                digits(ratio),
+                study.name,
+                digits(low),
+                digits(high)
+            ));
+        }
+    }
+}

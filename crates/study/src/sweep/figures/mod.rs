@@ -1,0 +1,196 @@
+//! What a sweep file asks to be made of its table: fragility curves, distributions, maps of
+//! overturning. The same for several studies side by side.
+
+mod distribution;
+mod fragility;
+mod overturning;
+mod page;
+mod table;
+
+use super::Sweep;
+use super::output::Output;
+use super::spec::{Node, Reader};
+pub(crate) use distribution::Distribution;
+pub(crate) use fragility::Fragility;
+pub(crate) use overturning::Overturning;
+pub use page::study_page;
+pub use table::{StudyTable, TableError};
+use teeter_plot::{AxisError, Figure, Theme};
+use toml::de::DeTable;
+
+/// What is to be made of the table of a study.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Wanted {
+    pub(crate) fragility: Option<Fragility>,
+    pub(crate) distribution: Option<Distribution>,
+    pub(crate) overturning: Option<Overturning>,
+}
+
+/// The tables of a sweep file that ask for something.
+pub(crate) const TABLES: [&str; 3] = ["fragility", "distribution", "overturning"];
+
+/// The files that they lead to.
+pub const FIGURE_FILES: [&str; 13] = [
+    "study.html",
+    "figures/fragility.svg",
+    "figures/fragility-2.svg",
+    "figures/fragility-3.svg",
+    "figures/fragility-4.svg",
+    "figures/distribution.svg",
+    "figures/overturning.svg",
+    "fragility.csv",
+    "fragility_curves.csv",
+    "fragility_data.csv",
+    "distribution.csv",
+    "distribution_tests.csv",
+    "overturning.csv",
+];
+
+impl Wanted {
+    /// Reads one of [`TABLES`].
+    pub(crate) fn read(&mut self, reader: &mut Reader<'_>, name: &str, table: &DeTable<'_>, node: &Node<'_, '_>) {
+        match name {
+            "fragility" => self.fragility = Fragility::read(reader, table, node),
+            "distribution" => self.distribution = Distribution::read(reader, table, node),
+            _ => self.overturning = Overturning::read(reader, table, node),
+        }
+    }
+
+    /// Whether nothing is asked for.
+    pub(crate) fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Adds the outputs that are needed.
+    pub(crate) fn claim(&self, reader: &mut Reader<'_>, outputs: &mut Vec<Output>) {
+        if let Some(of) = &self.fragility {
+            of.event.claim(reader, "fragility.event", outputs);
+        }
+        if let Some(of) = &self.overturning {
+            of.event.claim(reader, "overturning.event", outputs);
+        }
+    }
+
+    /// Refuses columns that the table won't have.
+    pub(crate) fn check(&self, reader: &mut Reader<'_>, columns: &[&str]) {
+        let mut named: Vec<(&str, &str)> = Vec::new();
+        if let Some(of) = &self.fragility {
+            named.extend(of.intensities.iter().map(|name| ("fragility.intensity", name.as_str())));
+        }
+        if let Some(of) = &self.distribution {
+            named.push(("distribution.of", &of.of));
+            named.extend(of.by.iter().map(|name| ("distribution.by", name.as_str())));
+        }
+        if let Some(of) = &self.overturning {
+            named.extend([("overturning.x", of.x.as_str()), ("overturning.y", of.y.as_str())]);
+            named.extend(of.by.iter().map(|name| ("overturning.by", name.as_str())));
+        }
+        for (path, name) in named.into_iter().filter(|(_, name)| !columns.contains(name)) {
+            let rule = format!("results.csv has no column `{name}`");
+            reader.wrong(path, None, &rule, &format!("these are there: {}", columns.join(", ")));
+        }
+    }
+}
+
+/// A study with its table.
+#[derive(Debug)]
+pub struct Ensemble {
+    /// Its name in legends and tables.
+    pub name: String,
+    /// How it was asked for.
+    pub sweep: Sweep,
+    /// Its rows.
+    pub table: StudyTable,
+}
+
+/// A figure with its numbers, and what is said of it on the page.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct StudyFigure {
+    /// `fragility`, `distribution` or `overturning`: the name of its file.
+    pub name: &'static str,
+    /// Its heading.
+    pub title: String,
+    /// The figure.
+    figure: Figure,
+    /// Figures over other quantities, with their names; in files of their own.
+    more: Vec<(String, Figure)>,
+    /// Its numbers: names and contents of tables.
+    pub tables: Vec<(&'static str, String)>,
+    /// Sentences: what it shows, and what limits it.
+    pub notes: Vec<String>,
+    /// The table on the page: its header and rows.
+    pub summary: (Vec<&'static str>, Vec<Vec<String>>),
+}
+
+impl StudyFigure {
+    /// As SVG for files, with their names.
+    #[must_use]
+    pub fn svgs(&self) -> Vec<(String, String)> {
+        let more = self.more.iter().enumerate();
+        let more = more.map(|(k, (_, figure))| (format!("figures/{}-{}.svg", self.name, k + 2), figure.to_svg()));
+        std::iter::once((format!("figures/{}.svg", self.name), self.figure.to_svg())).chain(more).collect()
+    }
+
+    /// As SVG for a page.
+    fn themed(&self) -> String {
+        let all = std::iter::once(&self.figure).chain(self.more.iter().map(|(_, figure)| figure));
+        all.map(|figure| figure.clone().theme(Theme::Page).to_svg()).collect()
+    }
+}
+
+/// The figures that the sweep files ask for, of one study or of several side by side; those that not
+/// all of them ask for are left out.
+///
+/// # Errors
+/// If a value can't be shown on an axis.
+pub fn study_figures(studies: &[Ensemble]) -> Result<Vec<StudyFigure>, AxisError> {
+    let mut figures = Vec::new();
+    if studies.is_empty() {
+        return Ok(figures);
+    }
+    let all = |asks: fn(&Wanted) -> bool| studies.iter().all(|study| asks(study.sweep.wanted()));
+    if all(|wanted| wanted.fragility.is_some()) {
+        figures.push(fragility::figure(studies)?);
+    }
+    if all(|wanted| wanted.distribution.is_some()) {
+        figures.push(distribution::figure(studies)?);
+    }
+    // Maps of several studies would hide each other.
+    if let [study] = studies
+        && let Some(asked) = &study.sweep.wanted().overturning
+    {
+        figures.push(overturning::figure(study, asked)?);
+    }
+    Ok(figures)
+}
+
+/// A number with four digits, for pages.
+fn digits(x: f64) -> String {
+    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
+    if rounded == 0.0 || (1e-3..1e5).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
+}
+
+/// The label of a column on an axis: of a key with its unit.
+fn axis_label(column: &str) -> String {
+    use teeter_scenario::keys::{Kind, PathTarget, find};
+    let unit = match find(column) {
+        Some(PathTarget::Key(_, key)) => match key.kind {
+            Kind::Quantity(dimension, _) => dimension.unit().to_string(),
+            _ => String::new(),
+        },
+        _ => String::new(),
+    };
+    if unit.is_empty() { column.to_owned() } else { format!("{column} ({unit})") }
+}
+
+/// A text under a word of a table.
+fn text(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>, remedy: &str) -> Option<String> {
+    match node.text() {
+        Some(text) if !text.trim().is_empty() => Some(text.to_owned()),
+        _ => {
+            reader.wrong(path, Some(node), "a text is expected", remedy);
+            None
+        }
+    }
+}
