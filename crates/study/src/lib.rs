@@ -13,11 +13,13 @@
 
 mod accuracy;
 mod axes;
+pub mod compare;
 mod comparison;
 mod divergence;
 mod errors;
 mod first_steps;
 mod horizon;
+pub mod measured;
 mod recommend;
 mod reference;
 mod row;

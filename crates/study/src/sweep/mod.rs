@@ -12,11 +12,11 @@ mod file;
 mod identity;
 mod journal;
 mod listing;
-mod number;
+pub(crate) mod number;
 mod output;
-mod sample;
+pub(crate) mod sample;
 mod shard;
-mod spec;
+pub(crate) mod spec;
 
 pub use case::{CaseRow, CaseStatus, run_cases};
 pub use file::{FilesOf, Sweep};
