@@ -1,8 +1,11 @@
 //! The program `teeter`.
 
 mod check;
+mod compare;
 mod console;
+mod fit;
 mod interrupt;
+mod measured;
 mod progress;
 mod render;
 mod run;
@@ -167,6 +170,68 @@ enum Command {
         #[arg(long)]
         force: bool,
     },
+    /// Compare a run with measured motion: aligned in time, errors, half-cycles, impacts, figures
+    #[command(after_help = COMPARE_HELP)]
+    Compare {
+        /// The folder of a run
+        #[arg(value_name = "RUN_DIR")]
+        run: PathBuf,
+        #[command(flatten)]
+        measured: measured::MeasuredOptions,
+        /// What the measured angle shows when the block stands upright, such as "0.2 deg"
+        #[arg(long, value_name = "ANGLE", default_value = "0 rad", hide_default_value = true)]
+        #[arg(value_parser = measured::angle, allow_hyphen_values = true)]
+        offset: f64,
+        /// Folder for the results (default: that of the run with `-compare`)
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Print only the results and errors
+        #[arg(long)]
+        quiet: bool,
+        /// Replace results of an earlier comparison
+        #[arg(long)]
+        force: bool,
+    },
+    /// Find the values of keys with which a scene fits measured motion best
+    #[command(after_help = FIT_HELP)]
+    Fit {
+        /// The scene file; `-` reads standard input
+        scene: PathBuf,
+        #[command(flatten)]
+        measured: measured::MeasuredOptions,
+        /// A key and the range in which its value is sought, such as
+        /// contact.feet.restitution=0..0.8; may be repeated
+        #[arg(long, value_name = "KEY=LOW..HIGH", required = true, num_args = 1.., value_parser = teeter_study::fit::FitKey::read)]
+        vary: Vec<teeter_study::fit::FitKey>,
+        /// What the measured angle shows when the block stands upright, such as "0.2 deg" (default:
+        /// fitted)
+        #[arg(long, value_name = "ANGLE", value_parser = measured::angle, allow_hyphen_values = true)]
+        offset: Option<f64>,
+        /// Number of values tried all over the ranges first (default: 16 for each key, and 16 more)
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+        samples: Option<u16>,
+        /// Seed of these values
+        #[arg(long, value_name = "N", default_value = "1")]
+        seed: u64,
+        /// Number of runs at once (default: one for each core)
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+        jobs: Option<u16>,
+        /// Folder of the files that the scene names (default: the scene file's own)
+        #[arg(long, value_name = "DIR")]
+        base: Option<PathBuf>,
+        /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
+        #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
+        set: Vec<(String, String)>,
+        /// Folder for the results (default: `runs/` with the name of the scene file and `-fit`)
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Print only the results and errors
+        #[arg(long)]
+        quiet: bool,
+        /// Replace results of an earlier fit
+        #[arg(long)]
+        force: bool,
+    },
     /// List the contact solvers: their dimensions, law (exact or convex) and source
     Solvers,
     /// Solve contact problems from FCLIB files; print residual, iterations and time
@@ -237,7 +302,23 @@ A sweep file:
 
 docs/sweep.md describes it.";
 
-fn key_value(text: &str) -> Result<(String, String), String> {
+const COMPARE_HELP: &str = "Examples:
+  teeter compare runs/rocking camera.csv
+  teeter compare runs/rocking camera.csv --column t=Time --column phi=\"Angle\" --unit phi=deg
+  teeter compare runs/rocking frames.csv --rate \"165 Hz\" --column phi=2 --shift \"-0.31 s\" --sign 1
+  teeter compare runs/rocking markers.csv --columns markers.toml
+
+Both motions go through the same sampling and smoothing before rates are compared. docs/compare.md describes tables,
+markers and results.";
+
+const FIT_HELP: &str = "Examples:
+  teeter fit rocking.toml camera.csv --vary contact.feet.restitution=0..0.8
+  teeter fit rocking.toml camera.csv --vary contact.feet.friction=0.1..1 --vary beam.table.thickness=\"1 mm..3 mm\"
+
+The time shift and the zero of the measured angle are fitted too, unless given. docs/fit.md describes the method and the
+results.";
+
+pub(crate) fn key_value(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
         _ => Err("write KEY=VALUE, such as time.step=50us".to_owned()),
@@ -316,6 +397,15 @@ fn main() -> ExitCode {
         }
         Command::Sweep { sweep: None, out, merge, quiet, force, .. } => {
             sweep::merge_shards(&merge, &out.unwrap_or_default(), force, quiet).into()
+        }
+        Command::Compare { run, measured, offset, out, quiet, force } => {
+            compare::compare(&compare::Options { run, measured, offset, out, quiet, force }).into()
+        }
+        Command::Fit { scene, measured, vary, offset, samples, seed, jobs, base, set, out, quiet, force } => {
+            let (samples, jobs) = (samples.map(usize::from), jobs.map(usize::from));
+            let options =
+                fit::Options { scene, base, set, measured, vary, offset, samples, seed, jobs, out, quiet, force };
+            fit::fit(&options).into()
         }
         Command::Solvers => solve::list().into(),
         Command::Solve { paths, solvers, tolerance, time_limit, json, solutions, profile, force } => {

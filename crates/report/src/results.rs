@@ -103,12 +103,14 @@ pub struct Reserved {
 }
 
 /// Files that only one command writes.
-const MARKS: [(&str, &str); 5] = [
+const MARKS: [(&str, &str); 7] = [
     ("trajectory.csv", "`teeter run`"),
     ("summary.json", "`teeter run`"),
     (CHECKPOINT, "`teeter run`"),
     ("tradeoff.json", "`teeter tradeoff`"),
     ("sweep.json", "`teeter sweep`"),
+    ("compare.json", "`teeter compare`"),
+    ("fit.json", "`teeter fit`"),
 ];
 
 /// The lock of a folder for results.

@@ -18,6 +18,7 @@ mod comparison;
 mod divergence;
 mod errors;
 mod first_steps;
+pub mod fit;
 mod horizon;
 pub mod measured;
 mod recommend;

@@ -52,10 +52,10 @@ pub fn align(
     for sign in signs {
         let mut motion = measured.motion(sign);
         set_zero(&mut motion, sign.factor() * offset, start);
-        let search = Search::new(&motion, trace, end);
+        let search = Search::new(&motion, trace, end, SEARCH_ROWS);
         let (shift, mismatch) = match settings.shift {
             Some(shift) => (shift, search.mismatch(shift).unwrap_or(f64::INFINITY)),
-            None => search.best(),
+            None => search.best(MOST_SHIFTS),
         };
         // Of an exact tie, the side as it is.
         if best.as_ref().is_none_or(|(found, _)| mismatch < found.mismatch) {
@@ -85,12 +85,12 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(motion: &MeasuredMotion, trace: &'a MotionTrace, end: f64) -> Self {
+    fn new(motion: &MeasuredMotion, trace: &'a MotionTrace, end: f64, most_rows: usize) -> Self {
         let channel = motion.leading();
         let values = motion.values(channel).unwrap_or_default();
         let present: Vec<(f64, f64)> =
             motion.t.iter().copied().zip(values.iter().copied()).filter(|(_, value)| value.is_finite()).collect();
-        let every = present.len().div_ceil(SEARCH_ROWS).max(1);
+        let every = present.len().div_ceil(most_rows).max(1);
         Self { trace, channel, rows: present.into_iter().step_by(every).collect(), end }
     }
 
@@ -123,12 +123,12 @@ impl<'a> Search<'a> {
         (all > 0.0).then_some(off / all)
     }
 
-    /// The best shift and its mismatch.
-    fn best(&self) -> (f64, f64) {
+    /// The best shift and its mismatch, of at most so many shifts that are tried first.
+    fn best(&self, most: usize) -> (f64, f64) {
         let (Some(first), Some(last)) = (self.rows.first(), self.rows.last()) else { return (0.0, f64::INFINITY) };
         let (low, high) = (-last.0, self.end - first.0);
         let spacing = (last.0 - first.0) / (self.rows.len() as f64 - 1.0).max(1.0);
-        let count = (((high - low) / spacing.max(1e-12)) as usize).clamp(2, MOST_SHIFTS);
+        let count = (((high - low) / spacing.max(1e-12)) as usize).clamp(2, most);
         let step = (high - low) / count as f64;
         let tried = (0..=count).filter_map(|k| {
             let shift = low + step * k as f64;
@@ -138,6 +138,12 @@ impl<'a> Search<'a> {
         let shift = golden(coarse - step, coarse + step, |shift| self.mismatch(shift).unwrap_or(f64::INFINITY));
         (shift, self.mismatch(shift).unwrap_or(f64::INFINITY))
     }
+}
+
+/// The time shift (s) that aligns a motion with a run, and the mismatch that is left, by a search with
+/// fewer rows and shifts than [`align`]: for many runs.
+pub(crate) fn mismatch_and_shift(motion: &MeasuredMotion, trace: &MotionTrace, end: f64) -> (f64, f64) {
+    Search::new(motion, trace, end, 300).best(400)
 }
 
 /// The minimum of a function between two points by golden sections.

@@ -77,7 +77,7 @@ pub(super) fn of(
 }
 
 /// The mean of simulated minus measured values.
-pub(crate) fn offset_of(measured: &[f64], simulated: &[f64], rows: Range<usize>) -> f64 {
+fn offset_of(measured: &[f64], simulated: &[f64], rows: Range<usize>) -> f64 {
     let off: Vec<f64> = rows.map(|row| simulated[row] - measured[row]).filter(|off| off.is_finite()).collect();
     off.iter().sum::<f64>() / (off.len() as f64).max(1.0)
 }

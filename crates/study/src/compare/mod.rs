@@ -8,8 +8,8 @@ mod trace;
 mod write;
 
 pub use align::{Alignment, AlignmentSettings, align};
+pub(crate) use align::{golden, mismatch_and_shift, set_zero};
 pub use cycles::{HalfCycle, HalfCyclePair, ImpactPair, Swing, pair_half_cycles, pair_impacts, swing};
-pub(crate) use differences::offset_of;
 pub use differences::{ChannelComparison, Differences};
 pub(crate) use trace::Tracer;
 pub use trace::{MotionTrace, TraceError};
