@@ -6,15 +6,18 @@ mod console;
 mod fit;
 mod interrupt;
 mod measured;
+mod new;
 mod progress;
 mod render;
 mod run;
 mod scene;
 mod scene_page;
 mod schema;
+mod shell;
 mod solve;
 mod sweep;
 mod tradeoff;
+mod watch;
 
 use clap::{Parser, Subcommand};
 use console::Console;
@@ -97,6 +100,26 @@ enum Command {
         /// --from
         #[arg(long, value_name = "FILE")]
         dump_unconverged: Option<PathBuf>,
+        /// Run again whenever the scene or a file that it names changes, until Ctrl-C
+        #[arg(long, conflicts_with_all = ["resume", "dump_unconverged"])]
+        watch: bool,
+    },
+    /// Write a commented scene to start from
+    #[command(after_help = "Examples:\n  teeter new --list\n  teeter new arch.toml --from masonry-arch\n  \
+        teeter new - --from drop | teeter run -")]
+    New {
+        /// The file to write; `-` writes to standard output
+        #[arg(value_name = "FILE.toml", required_unless_present = "list")]
+        file: Option<PathBuf>,
+        /// Which scene
+        #[arg(long, value_name = "SCENARIO", default_value = new::DEFAULT)]
+        from: String,
+        /// List the scenes
+        #[arg(long)]
+        list: bool,
+        /// Replace the file
+        #[arg(long)]
+        force: bool,
     },
     /// Show what a run of a scene models, costs and writes, and what looks wrong; run nothing
     #[command(after_help = "Examples:\n  teeter check scenarios/free-rocking-on-beam.toml\n  \
@@ -264,6 +287,21 @@ enum Command {
         #[arg(long)]
         force: bool,
     },
+    /// Print completions of commands and options for a shell
+    #[command(
+        after_help = "Examples:\n  teeter completions bash > ~/.local/share/bash-completion/completions/teeter\n  \
+        teeter completions fish > ~/.config/fish/completions/teeter.fish"
+    )]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Write man pages of the program and its commands to a folder
+    Man {
+        /// The folder
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
     /// Print the JSON Schema of scene files, for editors
     #[command(after_help = "Examples:\n  teeter schema > scene.schema.json\n  teeter schema --format markdown")]
     Schema {
@@ -360,6 +398,7 @@ fn main() -> ExitCode {
             model,
             from,
             dump_unconverged,
+            watch,
         } => {
             set.extend(accuracy.map(|accuracy| ("time.accuracy".to_owned(), accuracy)));
             let export = export_problems.map(|folder| (folder, export_when));
@@ -383,7 +422,7 @@ fn main() -> ExitCode {
                 horizon,
                 dump_unconverged,
             };
-            run::run(&options).into()
+            if watch { watch::watch(options).into() } else { run::run(&options).into() }
         }
         Command::Check { scene, base, set, model } => {
             check::check(&check::Options { scene, base, set, extent: model }).into()
@@ -412,6 +451,9 @@ fn main() -> ExitCode {
             solve::solve(&solve::Options { paths, solvers, tolerance, time_limit, json, solutions, profile, force })
                 .into()
         }
+        Command::New { file, from, list, force } => new::new(&new::Options { file, from, list, force }).into(),
+        Command::Completions { shell } => shell::completions(shell).into(),
+        Command::Man { folder } => shell::man(&folder).into(),
         Command::Schema { format } => schema::print(format).into(),
     }
 }

@@ -97,6 +97,20 @@ impl Options {
     }
 }
 
+/// The files from which the scene is read, as far as it can be read.
+pub(crate) fn inputs(options: &Options) -> Vec<PathBuf> {
+    let source = scene::source(&options.scene, options.base.as_deref());
+    let named = source.and_then(|source| source.load(&options.set).map(|resolved| source.inputs(&resolved)));
+    named.unwrap_or_else(|_| vec![options.scene.clone()])
+}
+
+/// Whether the folder for the results holds some already.
+pub(crate) fn has_results(options: &Options) -> bool {
+    let stem = options.scene.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(stem));
+    Results::replaced(&FILES, &folder, false).is_err()
+}
+
 /// `required` or `full`.
 pub(crate) fn extent(text: &str) -> Result<Extent, String> {
     let known = [Extent::Required, Extent::Full].into_iter().find(|extent| extent.word() == text);

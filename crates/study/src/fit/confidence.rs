@@ -99,7 +99,7 @@ pub(super) fn of(objective: &Objective<'_>, fitted: &Trial) -> Option<Confidence
         columns
             .push(of_channel.iter().map(|(other, noise)| if *other == channel { -1.0 / noise } else { 0.0 }).collect());
         let (name, unit, value) = match channel {
-            Channel::Phi => ("zero of the angle", "rad", fitted.offset),
+            Channel::Phi => ("zero of the angle", "rad", objective.sign.factor() * fitted.offset),
             Channel::X => ("origin of x", "m", f64::NAN),
             _ => ("origin of y", "m", f64::NAN),
         };

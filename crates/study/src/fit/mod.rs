@@ -75,7 +75,7 @@ pub struct Fit {
     pub residual_correlation: f64,
     /// Number of residuals.
     pub residuals: usize,
-    /// The values found from each start, best first: with their cost.
+    /// The different values at which starts ended, best first: with their cost.
     pub restarts: Vec<(Vec<f64>, f64)>,
     /// All that was tried.
     pub evaluations: Vec<Evaluation>,
@@ -107,8 +107,11 @@ pub type ReportFit<'a> = dyn FnMut(&str, usize, usize) + Send + 'a;
 
 /// Starts that are improved.
 const STARTS: usize = 4;
-/// The distance of differences at first, as a share of the range.
-const REACH: f64 = 4e-3;
+/// How much of the motion is fitted one after the other, with the distance of differences, as a share
+/// of the range.
+const EXTENSIONS: [(f64, f64); 4] = [(0.3, 4e-3), (0.55, 2e-3), (0.8, 1e-3), (1.0, 5e-4)];
+/// Size of the simplex in such distances.
+const SIMPLEX: f64 = 5.0;
 /// A horizon that moves by less than this share cuts nothing off.
 const SAME_HORIZON: f64 = 0.02;
 
@@ -164,8 +167,14 @@ impl Fit {
                 break;
             }
             until = cut;
-            objective.until = until;
-            best = improve(&objective, &best, settings.threads, &mut evaluations, report)?;
+            // From the beginning of the motion to all of it: after many impacts the difference is
+            // small only very near the right values, and the way there leads through the beginning.
+            for (share, reach) in EXTENSIONS {
+                objective.until = share * until;
+                let polish = share == 1.0;
+                best = improve(&objective, &best, reach, polish, settings.threads, &mut evaluations, report)?;
+                best = distinct(best, reach);
+            }
         }
         let fitted = &best[0];
         let setting = objective.setting(&fitted.at);
@@ -271,13 +280,12 @@ fn search<'a>(
             Some(_) => mismatch_of_given(objective, &trace),
             None => mismatch_and_shift(&objective.motion, &trace, objective.until),
         });
-        Ok(each.collect::<Vec<(f64, f64)>>())
+        Ok::<Vec<(f64, f64)>, Failure>(each.collect())
     };
-    let results: Vec<Option<Result<Vec<(f64, f64)>, Failure>>> =
-        runner::in_order(&places, settings.threads, cancel, work, |_| {
-            done += 1;
-            report("values all over the ranges", done, total);
-        });
+    let results = runner::in_order(&places, settings.threads, cancel, work, |_| {
+        done += 1;
+        report("values all over the ranges", done, total);
+    });
     let mut ranked: Vec<(usize, f64, usize)> = Vec::new();
     let mut why = "no run came to its end".to_owned();
     for (number, result) in results.into_iter().enumerate() {
@@ -314,6 +322,19 @@ fn initial_angle(resolved: &Resolved, block: usize) -> f64 {
     })
 }
 
+/// The trials, best first, without those that ended where a better one did.
+fn distinct(trials: Vec<Trial>, reach: f64) -> Vec<Trial> {
+    let mut kept: Vec<Trial> = Vec::new();
+    for trial in trials {
+        let same = |other: &Trial| other.at.iter().zip(&trial.at).all(|(a, b)| (a - b).abs() <= reach);
+        if !kept.iter().any(same) {
+            kept.push(trial);
+        }
+    }
+    kept.truncate(STARTS);
+    kept
+}
+
 /// The mean square difference with a given shift, relative to the noise.
 fn mismatch_of_given(objective: &Objective<'_>, trace: &crate::compare::MotionTrace) -> (f64, f64) {
     let shift = objective.shift.unwrap_or(0.0);
@@ -326,6 +347,8 @@ type Start = Point<(f64, Option<Trial>)>;
 fn improve(
     objective: &Objective<'_>,
     starts: &[Trial],
+    reach: f64,
+    polish: bool,
     threads: usize,
     evaluations: &mut Vec<Evaluation>,
     report: &mut ReportFit<'_>,
@@ -349,7 +372,7 @@ fn improve(
     let work = |start: &Trial| {
         // At the rows up to the horizon the cost is another one.
         let start = objective.trial(&start.at, start.shift).ok()?;
-        let found = levenberg_marquardt(point(start), REACH, &mut evaluate("improvement"));
+        let found = levenberg_marquardt(point(start), reach, &mut evaluate("improvement"));
         found.kept.1
     };
     let total = starts.len() + 1;
@@ -359,11 +382,15 @@ fn improve(
     });
     let mut best: Vec<Trial> = results.into_iter().flatten().flatten().filter(|trial| trial.cost.is_finite()).collect();
     best.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    let Some(first) = best.first().cloned() else { return Err(FitError::Interrupted) };
+    let Some(first) = best.first().cloned().filter(|_| polish) else {
+        evaluations.extend(tried.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner));
+        let cancelled = best.is_empty() || objective.cancel.load(std::sync::atomic::Ordering::Relaxed);
+        return if cancelled { Err(FitError::Interrupted) } else { Ok(best) };
+    };
     // A rough function may stop a method that needs derivatives.
     let dimensions = objective.keys.len();
-    let simplex = nelder_mead(point(first), 0.02, 30 * dimensions, &mut evaluate("simplex"));
-    let last = levenberg_marquardt(simplex, 0.5 * REACH, &mut evaluate("improvement"));
+    let simplex = nelder_mead(point(first), SIMPLEX * reach, 30 * dimensions, &mut evaluate("simplex"));
+    let last = levenberg_marquardt(simplex, 0.5 * reach, &mut evaluate("improvement"));
     report("improved starts", total, total);
     best.extend(last.kept.1);
     best.sort_by(|a, b| a.cost.total_cmp(&b.cost));

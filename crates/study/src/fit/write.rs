@@ -1,7 +1,7 @@
 //! What a fit writes.
 
 use super::{Estimate, Fit};
-use crate::compare::{fixed, html_head, html_list, html_table, motion_figures, sentences_of};
+use crate::compare::{fixed, horizon_note, html_head, html_list, html_table, motion_figures, sentences_of};
 use crate::write::{percent, short};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -23,9 +23,6 @@ pub const FILES: [&str; 10] = [
 
 /// A key whose standard error is more than this share of its range is hardly determined.
 const HARDLY: f64 = 0.15;
-/// Starts whose cost is within this share of the best count as the same minimum.
-const SAME: f64 = 0.02;
-
 /// `fit.csv`: all values tried: `stage`, a column for each key (in its unit), `cost` (empty if the run failed).
 #[must_use]
 pub fn csv(fit: &Fit) -> String {
@@ -140,13 +137,15 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
     } else {
         format!("what is left is {} times the noise of the samples", short(left))
     });
-    let same = fit.restarts.iter().filter(|(_, cost)| *cost <= fit.restarts[0].1 * (1.0 + SAME)).count();
-    texts.push(format!(
-        "{} of {} starts led to the same minimum; {} runs were made",
-        same,
-        fit.restarts.len(),
-        fit.evaluations.len()
-    ));
+    texts.push(match fit.restarts.get(1) {
+        None => format!("all starts led to the same values; {} runs were made", fit.evaluations.len()),
+        Some((_, cost)) => format!(
+            "starts led to {} different values; the second best leave {} times the noise; {} runs were made",
+            fit.restarts.len(),
+            short(cost.sqrt()),
+            fit.evaluations.len()
+        ),
+    });
     if fit.residual_correlation > 0.1 {
         texts.push(format!(
             "what is left at one row resembles that at the next (correlation {:.2}): the errors allow for that",
@@ -184,7 +183,9 @@ pub fn page(fit: &Fit, title: &str, names: [&str; 3]) -> Result<String, AxisErro
     for (_, svg) in motion_figures(&fit.comparison, fit.before.as_ref(), Theme::Page)? {
         html.push_str(&svg);
     }
-    html.push_str("</div></section>\n<section class=\"panel\"><h3>Correlation of the estimates</h3>\n");
+    html.push_str("</div>");
+    html.push_str(horizon_note(&fit.comparison));
+    html.push_str("</section>\n<section class=\"panel\"><h3>Correlation of the estimates</h3>\n");
     let heads: Vec<String> = fit.estimates.iter().map(|found| escaped(&found.name)).collect();
     let heading: Vec<&str> = std::iter::once("").chain(heads.iter().map(String::as_str)).collect();
     let rows = fit.correlation.iter().zip(&heads).map(|(row, name)| {

@@ -323,7 +323,7 @@ impl Columns<'_> {
     fn missing(&self, name: &str, what: &str) -> MeasuredError {
         let titles = self.names.iter().map(|(name, _)| name.as_str());
         let near = nearest(name, titles.clone())
-            .map(|near| format!("; did you mean `{}`?", printable(&near)))
+            .map(|near| format!("; did you mean `{}`?", printable(near)))
             .unwrap_or_default();
         let there: Vec<String> = titles.map(|name| format!("`{}`", printable(name))).collect();
         let there = match there.as_slice() {

@@ -145,7 +145,9 @@ pub fn page(comparison: &Comparison, title: &str, names: [&str; 3]) -> Result<St
     for (_, svg) in motion_figures(comparison, None, Theme::Page)? {
         html.push_str(&svg);
     }
-    html.push_str("</div></section>\n<section class=\"panel\"><h3>Differences</h3>\n");
+    html.push_str("</div>");
+    html.push_str(horizon_note(comparison));
+    html.push_str("</section>\n<section class=\"panel\"><h3>Differences</h3>\n");
     html.push_str(&html_table(
         &[
             "Quantity",
@@ -170,6 +172,16 @@ pub fn page(comparison: &Comparison, title: &str, names: [&str; 3]) -> Result<St
         html_list(&sentences_of(comparison))
     );
     Ok(html)
+}
+
+/// What the dashed line in the figures is, if there is one.
+pub(crate) fn horizon_note(comparison: &Comparison) -> &'static str {
+    match comparison.settings.horizon {
+        Some(horizon) if horizon < comparison.trace.end() => {
+            "<p class=\"note\">Dashed: the horizon; rows after it aren’t compared.</p>"
+        }
+        _ => "",
+    }
 }
 
 fn half_cycles(comparison: &Comparison) -> String {
