@@ -97,7 +97,9 @@ fn a_run_seen_from_behind_at_another_time_is_recognised() {
     assert!((found["time_shift"].as_f64().unwrap() + 7.3).abs() < 5e-4, "{found}");
     let phi = &found["quantities"]["phi"];
     let degrees = |name: &str| phi[name].as_f64().unwrap().to_degrees();
-    assert!((degrees("noise") - 0.03).abs() < 0.006, "{phi}");
+    // From some 20 windows that don't overlap, of two degrees of freedom each, by their median: known to
+    // about 16 %; twice and a half that is allowed.
+    assert!((degrees("noise") - 0.03).abs() < 0.012, "{phi}");
     // A parabola through five rows keeps 0.7 of the noise; smoothing is the same for both motions.
     assert!(degrees("rms") < 0.03 && degrees("max") < 0.12, "{phi}");
     let omega = &found["quantities"]["omega"];
@@ -156,8 +158,8 @@ fn markers_on_the_block_give_its_motion_and_a_wrong_model_shows() {
     let markers = &found["markers"];
     assert_eq!((markers["count"].as_u64(), markers["placed"].as_bool()), (Some(3), Some(true)));
     assert!((markers["rms"].as_f64().unwrap() - 2e-4).abs() < 1e-4, "0.2 pixels of noise: {markers}");
-    // Another beam moves differently, and that shows.
-    done(&folder, &["run", &scene, "--out", "other", "--quiet", "--set", "beam.table.thickness=4 mm"]);
+    // Let go from another angle it moves differently, and that shows.
+    done(&folder, &["run", &scene, "--out", "other", "--quiet", "--set", "block.rocker.tilt=4 deg"]);
     done(
         &folder,
         &[
@@ -234,8 +236,10 @@ fn restitution_and_damping_come_back_within_two_percent() {
         let error = estimate["standard_error"].as_f64().unwrap();
         assert!((value - exact).abs() < 5.0 * error && error < within, "{name}: {value} ± {error}");
     }
+    // The noise of samples is estimated from parabolas, and a bouncing motion is none within seven
+    // frames: the estimate is too large, and what is left below one. A misfit would leave far more.
     let left = found["mean_square_over_noise"].as_f64().unwrap();
-    assert!((0.6..1.6).contains(&left), "what is left is noise: {left}");
+    assert!((0.3..1.5).contains(&left), "what is left is noise: {left}");
     // The fitted scene runs, and moves as fitted.
     done(&folder, &["run", "fitted/scene.toml", "--out", "again", "--quiet"]);
     done(&folder, &["compare", "again", "camera.csv", "--out", "compared", "--quiet", "--offset", "0.3 deg"]);
@@ -246,21 +250,28 @@ fn restitution_and_damping_come_back_within_two_percent() {
 #[test]
 fn keys_that_trade_off_are_told() {
     let folder = folder("trade-off");
-    let scene = scenario("free-rocking-on-beam.toml");
-    let run = ["run", &scene, "--out", "truth", "--quiet", "--set", "output.every=0.1 ms", "--set", "time.end=0.3 s"];
-    done(&folder, &run);
+    let scene = std::fs::read_to_string(scenario("free-rocking-on-beam.toml")).unwrap();
+    // A material of its own for the block: only the product of its density and depth matters.
+    let scene = scene.replace(
+        "[block.rocker]\nmaterial = \"aluminium\"",
+        "[material.brass]\ndensity = \"2700 kg/m^3\"\n\n[block.rocker]\nmaterial = \"brass\"",
+    );
+    std::fs::write(folder.join("scene.toml"), scene).unwrap();
+    done(
+        &folder,
+        &["run", "scene.toml", "--out", "truth", "--quiet", "--set", "output.every=0.1 ms", "--set", "time.end=0.3 s"],
+    );
     let mut noise = Noise(4);
     let mut text = "t,phi [deg]\n".to_owned();
     for [t, .., phi] in frames(&folder.join("truth"), "rocker") {
         writeln!(text, "{t:.6},{:.4}", phi.to_degrees() + 0.02 * noise.next()).unwrap();
     }
     std::fs::write(folder.join("camera.csv"), text).unwrap();
-    // Only the product E d³ bends the beam; its mass hardly matters beside the block's.
     let told = done(
         &folder,
         &[
             "fit",
-            &scene,
+            "scene.toml",
             "camera.csv",
             "--out",
             "fitted",
@@ -272,14 +283,16 @@ fn keys_that_trade_off_are_told() {
             "--samples",
             "12",
             "--vary",
-            "beam.table.thickness=1.3 mm..1.7 mm",
-            "material.aluminium.youngs_modulus=60 GPa..80 GPa",
+            "block.rocker.depth=2 cm..4 cm",
+            "material.brass.density=1800..4000 kg/m^3",
         ],
     );
-    assert!(
-        told.contains("beam.table.thickness and material.aluminium.youngs_modulus trade off (correlation -0.9"),
-        "{told}"
-    );
+    assert!(told.contains("block.rocker.depth and material.brass.density trade off (correlation -"), "{told}");
+    assert!(told.contains("hardly determines block.rocker.depth"), "{told}");
+    // The product is known all the same.
+    let found = read(&folder.join("fitted/fit.json"));
+    let value = |k: usize| found["estimates"][k]["value"].as_f64().unwrap();
+    assert!((value(0) * value(1) / (3.0 * 2700.0) - 1.0).abs() < 0.05, "{found}");
 }
 
 #[test]
@@ -328,7 +341,7 @@ fn bad_measured_tables_are_refused_with_their_line() {
     let fit = |vary: &str, says: &str| refused(&["fit", &scene, "good.csv", "--out", "out", "--vary", vary], says);
     fit("contact.feet.friction=0.9..0.2", "the lower bound of contact.feet.friction must be below the upper one");
     fit("contact.feet.friction=-1..0.2", "must be at least 0");
-    fit("contact.feet.fricton=0.1..0.2", "did you mean `friction`?");
+    fit("contact.feet.fricton=0.1..0.2", "did you mean `contact.feet.friction`?");
     fit("block.rocker.height=1 mm..2 cm", "have the units `mm` and `cm`");
     fit("contact.feet.friction", "write KEY=LOW..HIGH");
 }

@@ -25,14 +25,24 @@ pub(super) fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Vec<f64>> {
     b.iter().all(|x| x.is_finite()).then_some(b)
 }
 
-/// The inverse of a matrix, scaled to a unit diagonal first; `None` if it is singular.
+/// What is added to the unit diagonal of a singular matrix: unknowns of which only a combination
+/// matters get large, but finite errors, and a correlation of 1.
+const RIDGE: f64 = 1e-9;
+
+/// The inverse of a matrix of normal equations, scaled to a unit diagonal first; `None` if a diagonal
+/// element isn't positive.
 pub(super) fn inverse(a: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+    inverse_with(a, 0.0).filter(|found| (0..a.len()).all(|k| found[k][k] > 0.0)).or_else(|| inverse_with(a, RIDGE))
+}
+
+fn inverse_with(a: &[Vec<f64>], ridge: f64) -> Option<Vec<Vec<f64>>> {
     let n = a.len();
     let scale: Vec<f64> = (0..n).map(|k| a[k][k].sqrt()).collect();
     if scale.iter().any(|s| !(*s > 0.0)) {
         return None;
     }
-    let scaled: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| a[i][j] / (scale[i] * scale[j])).collect()).collect();
+    let entry = |i: usize, j: usize| a[i][j] / (scale[i] * scale[j]) + if i == j { ridge } else { 0.0 };
+    let scaled: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect();
     let column = |k: usize| solve(scaled.clone(), (0..n).map(|i| f64::from(u8::from(i == k))).collect());
     let columns: Option<Vec<Vec<f64>>> = (0..n).map(column).collect();
     let columns = columns?;
@@ -53,6 +63,9 @@ mod tests {
                 assert!((product - f64::from(u8::from(i == j))).abs() < 1e-9);
             }
         }
-        assert!(super::inverse(&[vec![1.0, 1.0], vec![1.0, 1.0]]).is_none());
+        // Only the sum of two unknowns matters: both are unknown, and one makes up for the other.
+        let singular = super::inverse(&[vec![1.0, 1.0], vec![1.0, 1.0]]).unwrap();
+        assert!(singular[0][0] > 1e8 && singular[0][1] / singular[0][0] < -0.999_999);
+        assert!(super::inverse(&[vec![0.0]]).is_none(), "nothing depends on it");
     }
 }
