@@ -100,6 +100,10 @@ enum Command {
         /// --from
         #[arg(long, value_name = "FILE")]
         dump_unconverged: Option<PathBuf>,
+        /// Also write pictures for ParaView, in the subfolder `vtk`: blocks, beams, contact forces, at
+        /// the interval of the tables
+        #[arg(long, conflicts_with = "resume")]
+        vtk: bool,
         /// Run again whenever the scene or a file that it names changes, until Ctrl-C
         #[arg(long, conflicts_with_all = ["resume", "dump_unconverged"])]
         watch: bool,
@@ -398,6 +402,7 @@ fn main() -> ExitCode {
             model,
             from,
             dump_unconverged,
+            vtk,
             watch,
         } => {
             set.extend(accuracy.map(|accuracy| ("time.accuracy".to_owned(), accuracy)));
@@ -420,6 +425,7 @@ fn main() -> ExitCode {
                 extent: model,
                 from,
                 horizon,
+                vtk,
                 dump_unconverged,
             };
             if watch { watch::watch(options).into() } else { run::run(&options).into() }

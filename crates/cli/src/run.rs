@@ -55,6 +55,8 @@ pub(crate) struct Options {
     pub(crate) export: Option<(PathBuf, ExportWhen)>,
     /// Simulated time between checkpoints, s.
     pub(crate) checkpoint_every: Option<f64>,
+    /// Whether to write pictures as VTK files.
+    pub(crate) vtk: bool,
     /// How much of the scene is modelled.
     pub(crate) extent: Extent,
     /// A state to start from.
@@ -89,6 +91,9 @@ impl Options {
         }
         if self.horizon {
             job = job.horizon();
+        }
+        if self.vtk {
+            job = job.with_vtk();
         }
         if let Some(path) = &self.dump_unconverged {
             job = job.dump_unconverged(path);

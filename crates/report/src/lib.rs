@@ -40,7 +40,8 @@ pub use columns::columns;
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
 pub use made_energy::ENERGY_MADE;
 pub use page::{
-    HalfCycle, Joint, PageRecorder, STYLE, ThrustLine, escaped, figures, half_cycles, render, thrust_lines,
+    HalfCycle, Joint, PageRecorder, STYLE, ThrustLine, VTK_SERIES, VtkRecorder, escaped, figures, half_cycles, render,
+    thrust_lines,
 };
 pub use readable::{shortest, with_digits, with_unit};
 pub use recorder::{ImpactRow, Record, Recorder};

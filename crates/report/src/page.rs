@@ -20,6 +20,7 @@ mod recorder;
 mod rocking;
 mod scenery;
 mod thrust;
+mod vtk;
 
 pub use chain::{Joint, ThrustLine, thrust_lines};
 pub use figures::figures;
@@ -28,6 +29,7 @@ pub(crate) use recorder::Kept;
 pub use recorder::PageRecorder;
 pub use rocking::{HalfCycle, half_cycles};
 pub use teeter_plot::escaped;
+pub use vtk::{VTK_SERIES, VtkRecorder};
 
 /// A number with so many significant digits: what the page shows needs no more, and a shorter page loads faster.
 fn rounded(x: f64, digits: usize) -> f64 {

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// The files that a run may write; which of the figures, depends on its scene. They are removed in this order: no summary
 /// outlives a table, and while there is anything, `scene.toml` says of what.
-pub const FILES: [&str; 20] = [
+pub const FILES: [&str; 21] = [
     CHECKPOINT,
     "summary.json",
     "trajectory.csv",
@@ -29,6 +29,7 @@ pub const FILES: [&str; 20] = [
     "figures/phase.svg",
     "figures/records.svg",
     "figures/spectra.svg",
+    "vtk/scene.pvd",
     "scene.toml",
 ];
 
