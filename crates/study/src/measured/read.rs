@@ -33,7 +33,7 @@ pub enum MeasuredError {
     #[error("the file is empty")]
     Empty,
     /// There is a heading only.
-    #[error("a heading without rows of numbers")]
+    #[error("there is a heading, but no row of numbers")]
     NoRows,
     /// A mistake in a line.
     #[error("line {line}: {what}")]
@@ -47,7 +47,7 @@ pub enum MeasuredError {
     #[error("{0}")]
     Columns(String),
     /// Too few rows have a value.
-    #[error("{channel} has {found} values, but a motion needs {FEWEST} or more")]
+    #[error("{channel} has {found} value{}, but a motion needs {FEWEST} or more", if *.found == 1 { "" } else { "s" })]
     TooFew {
         /// The quantity.
         channel: &'static str,
@@ -237,6 +237,11 @@ impl Measured {
     }
 }
 
+/// What would be right instead, to be added to an error.
+fn remedy(error: &quantity::QuantityError) -> String {
+    error.remedy().map(|remedy| format!("; {remedy}")).unwrap_or_default()
+}
+
 impl Marker {
     fn is_seen(&self, row: usize) -> bool {
         self.x[row].is_finite() && self.y[row].is_finite()
@@ -295,7 +300,7 @@ impl Columns<'_> {
         let scale = match spec.unit.as_deref().or(heading) {
             None => 1.0,
             Some(unit) => quantity::parse(&format!("1 {unit}"), dimension).map_err(|error| {
-                MeasuredError::Columns(format!("the unit `{}` of {what}: {error}", printable(unit)))
+                MeasuredError::Columns(format!("the unit `{}` of {what}: {error}{}", printable(unit), remedy(&error)))
             })?,
         };
         let mut values = Vec::with_capacity(self.table.rows.len());
@@ -429,14 +434,14 @@ mod tests {
         let message = |text: &str| read(text, &plain).unwrap_err();
         let good = rows(|k| format!("{k},0.1"));
         assert_eq!(message(""), "the file is empty");
-        assert_eq!(message("t,phi\n"), "a heading without rows of numbers");
-        assert_eq!(message("t,phi\n0,0.1\n"), "phi has 1 values, but a motion needs 8 or more");
+        assert_eq!(message("t,phi\n"), "there is a heading, but no row of numbers");
+        assert_eq!(message("t,phi\n0,0.1\n"), "phi has 1 value, but a motion needs 8 or more");
         assert_eq!(message(&format!("t,phi\n{good}5,0.1\n")), "line 22: t = 5 s is not after the row before, t = 19 s");
         assert_eq!(
             message("t,phi\n0,0.1\n1,nan\n"),
             "line 3: `nan` in column 2 (phi) is not a number; leave the cell of a lost frame empty"
         );
-        assert_eq!(message("t,phi\n0,0.1\n1\n"), "line 3: 1 columns, but the rows before have 2");
+        assert_eq!(message("t,phi\n0,0.1\n1\n"), "line 3: 1 column, but the rows before have 2");
         assert!(
             message(&format!("t,angle\n{good}"))
                 .starts_with("no column of the motion of `rocker` is known: the table has `t`, `angle`")

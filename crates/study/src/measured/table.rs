@@ -42,7 +42,11 @@ impl TextTable {
             if cells.len() != columns {
                 return Err(MeasuredError::line(
                     number,
-                    format!("{} columns, but the rows before have {columns}", cells.len()),
+                    format!(
+                        "{} column{}, but the rows before have {columns}",
+                        cells.len(),
+                        if cells.len() == 1 { "" } else { "s" }
+                    ),
                 ));
             }
             if rows.len() == MOST_ROWS {
