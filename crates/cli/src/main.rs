@@ -1,8 +1,12 @@
 //! The program `teeter`.
 
 mod check;
+mod compare;
 mod console;
+mod fit;
 mod interrupt;
+mod measured;
+mod new;
 mod progress;
 mod record;
 mod render;
@@ -10,9 +14,11 @@ mod run;
 mod scene;
 mod scene_page;
 mod schema;
+mod shell;
 mod solve;
 mod sweep;
 mod tradeoff;
+mod watch;
 
 use clap::{Parser, Subcommand};
 use console::Console;
@@ -95,6 +101,30 @@ enum Command {
         /// --from
         #[arg(long, value_name = "FILE")]
         dump_unconverged: Option<PathBuf>,
+        /// Also write pictures for ParaView, in the subfolder `vtk`: blocks, beams, contact forces, at
+        /// the interval of the tables
+        #[arg(long, conflicts_with = "resume")]
+        vtk: bool,
+        /// Run again whenever the scene or a file that it names changes, until Ctrl-C
+        #[arg(long, conflicts_with_all = ["resume", "dump_unconverged"])]
+        watch: bool,
+    },
+    /// Write a commented scene to start from
+    #[command(after_help = "Examples:\n  teeter new --list\n  teeter new arch.toml --from masonry-arch\n  \
+        teeter new - --from drop | teeter run -")]
+    New {
+        /// The file to write; `-` writes to standard output
+        #[arg(value_name = "FILE.toml", required_unless_present = "list")]
+        file: Option<PathBuf>,
+        /// Which scene
+        #[arg(long, value_name = "SCENARIO", default_value = new::DEFAULT)]
+        from: String,
+        /// List the scenes
+        #[arg(long)]
+        list: bool,
+        /// Replace the file
+        #[arg(long)]
+        force: bool,
     },
     /// Show what a run of a scene models, costs and writes, and what looks wrong; run nothing
     #[command(after_help = "Examples:\n  teeter check scenarios/free-rocking-on-beam.toml\n  \
@@ -229,6 +259,68 @@ enum Command {
         #[arg(long, requires = "out")]
         force: bool,
     },
+    /// Compare a run with measured motion: aligned in time, errors, half-cycles, impacts, figures
+    #[command(after_help = COMPARE_HELP)]
+    Compare {
+        /// The folder of a run
+        #[arg(value_name = "RUN_DIR")]
+        run: PathBuf,
+        #[command(flatten)]
+        measured: measured::MeasuredOptions,
+        /// What the measured angle shows when the block stands upright, such as "0.2 deg"
+        #[arg(long, value_name = "ANGLE", default_value = "0 rad", hide_default_value = true)]
+        #[arg(value_parser = measured::angle, allow_hyphen_values = true)]
+        offset: f64,
+        /// Folder for the results (default: that of the run with `-compare`)
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Print only the results and errors
+        #[arg(long)]
+        quiet: bool,
+        /// Replace results of an earlier comparison
+        #[arg(long)]
+        force: bool,
+    },
+    /// Find the values of keys with which a scene fits measured motion best
+    #[command(after_help = FIT_HELP)]
+    Fit {
+        /// The scene file; `-` reads standard input
+        scene: PathBuf,
+        #[command(flatten)]
+        measured: measured::MeasuredOptions,
+        /// A key and the range in which its value is sought, such as
+        /// contact.feet.restitution=0..0.8; may be repeated
+        #[arg(long, value_name = "KEY=LOW..HIGH", required = true, num_args = 1.., value_parser = teeter_study::fit::FitKey::read)]
+        vary: Vec<teeter_study::fit::FitKey>,
+        /// What the measured angle shows when the block stands upright, such as "0.2 deg" (default:
+        /// fitted)
+        #[arg(long, value_name = "ANGLE", value_parser = measured::angle, allow_hyphen_values = true)]
+        offset: Option<f64>,
+        /// Number of values tried all over the ranges first (default: 16 for each key, and 16 more)
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+        samples: Option<u16>,
+        /// Seed of these values
+        #[arg(long, value_name = "N", default_value = "1")]
+        seed: u64,
+        /// Number of runs at once (default: one for each core)
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+        jobs: Option<u16>,
+        /// Folder of the files that the scene names (default: the scene file's own)
+        #[arg(long, value_name = "DIR")]
+        base: Option<PathBuf>,
+        /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
+        #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
+        set: Vec<(String, String)>,
+        /// Folder for the results (default: `runs/` with the name of the scene file and `-fit`)
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Print only the results and errors
+        #[arg(long)]
+        quiet: bool,
+        /// Replace results of an earlier fit
+        #[arg(long)]
+        force: bool,
+    },
     /// List the contact solvers: their dimensions, law (exact or convex) and source
     Solvers,
     /// Solve contact problems from FCLIB files; print residual, iterations and time
@@ -260,6 +352,21 @@ enum Command {
         /// Replace solutions or profiles of an earlier solve
         #[arg(long)]
         force: bool,
+    },
+    /// Print completions of commands and options for a shell
+    #[command(
+        after_help = "Examples:\n  teeter completions bash > ~/.local/share/bash-completion/completions/teeter\n  \
+        teeter completions fish > ~/.config/fish/completions/teeter.fish"
+    )]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Write man pages of the program and its commands to a folder
+    Man {
+        /// The folder
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
     },
     /// Print the JSON Schema of scene files, for editors
     #[command(after_help = "Examples:\n  teeter schema > scene.schema.json\n  teeter schema --format markdown")]
@@ -307,7 +414,23 @@ A sweep file:
 
 docs/sweep.md describes it.";
 
-fn key_value(text: &str) -> Result<(String, String), String> {
+const COMPARE_HELP: &str = "Examples:
+  teeter compare runs/rocking camera.csv
+  teeter compare runs/rocking camera.csv --column t=Time --column phi=\"Angle\" --unit phi=deg
+  teeter compare runs/rocking frames.csv --rate \"165 Hz\" --column phi=2 --shift \"-0.31 s\" --sign 1
+  teeter compare runs/rocking markers.csv --columns markers.toml
+
+Both motions go through the same sampling and smoothing before rates are compared. docs/compare.md describes tables,
+markers and results.";
+
+const FIT_HELP: &str = "Examples:
+  teeter fit rocking.toml camera.csv --vary contact.feet.restitution=0..0.8
+  teeter fit rocking.toml camera.csv --vary contact.feet.friction=0.1..1 --vary beam.table.thickness=\"1 mm..3 mm\"
+
+The time shift and the zero of the measured angle are fitted too, unless given. docs/fit.md describes the method and the
+results.";
+
+pub(crate) fn key_value(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
         _ => Err("write KEY=VALUE, such as time.step=50us".to_owned()),
@@ -349,6 +472,8 @@ fn main() -> ExitCode {
             model,
             from,
             dump_unconverged,
+            vtk,
+            watch,
         } => {
             set.extend(accuracy.map(|accuracy| ("time.accuracy".to_owned(), accuracy)));
             let export = export_problems.map(|folder| (folder, export_when));
@@ -370,9 +495,10 @@ fn main() -> ExitCode {
                 extent: model,
                 from,
                 horizon,
+                vtk,
                 dump_unconverged,
             };
-            run::run(&options).into()
+            if watch { watch::watch(options).into() } else { run::run(&options).into() }
         }
         Command::Check { scene, base, set, model } => {
             check::check(&check::Options { scene, base, set, extent: model }).into()
@@ -427,11 +553,23 @@ fn main() -> ExitCode {
             let keys = keys.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?))).collect();
             record::record(&record::Options { file, keys, json, out, force }).into()
         }
+        Command::Compare { run, measured, offset, out, quiet, force } => {
+            compare::compare(&compare::Options { run, measured, offset, out, quiet, force }).into()
+        }
+        Command::Fit { scene, measured, vary, offset, samples, seed, jobs, base, set, out, quiet, force } => {
+            let (samples, jobs) = (samples.map(usize::from), jobs.map(usize::from));
+            let options =
+                fit::Options { scene, base, set, measured, vary, offset, samples, seed, jobs, out, quiet, force };
+            fit::fit(&options).into()
+        }
         Command::Solvers => solve::list().into(),
         Command::Solve { paths, solvers, tolerance, time_limit, json, solutions, profile, force } => {
             solve::solve(&solve::Options { paths, solvers, tolerance, time_limit, json, solutions, profile, force })
                 .into()
         }
+        Command::New { file, from, list, force } => new::new(&new::Options { file, from, list, force }).into(),
+        Command::Completions { shell } => shell::completions(shell).into(),
+        Command::Man { folder } => shell::man(&folder).into(),
         Command::Schema { format } => schema::print(format).into(),
     }
 }

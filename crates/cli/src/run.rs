@@ -55,6 +55,8 @@ pub(crate) struct Options {
     pub(crate) export: Option<(PathBuf, ExportWhen)>,
     /// Simulated time between checkpoints, s.
     pub(crate) checkpoint_every: Option<f64>,
+    /// Whether to write pictures as VTK files.
+    pub(crate) vtk: bool,
     /// How much of the scene is modelled.
     pub(crate) extent: Extent,
     /// A state to start from.
@@ -90,11 +92,28 @@ impl Options {
         if self.horizon {
             job = job.horizon();
         }
+        if self.vtk {
+            job = job.with_vtk();
+        }
         if let Some(path) = &self.dump_unconverged {
             job = job.dump_unconverged(path);
         }
         Ok(job)
     }
+}
+
+/// The files from which the scene is read, as far as it can be read.
+pub(crate) fn inputs(options: &Options) -> Vec<PathBuf> {
+    let source = scene::source(&options.scene, options.base.as_deref());
+    let named = source.and_then(|source| source.load(&options.set).map(|resolved| source.inputs(&resolved)));
+    named.unwrap_or_else(|_| vec![options.scene.clone()])
+}
+
+/// Whether the folder for the results holds some already.
+pub(crate) fn has_results(options: &Options) -> bool {
+    let stem = options.scene.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(stem));
+    Results::replaced(&FILES, &folder, false).is_err()
 }
 
 /// `required` or `full`.

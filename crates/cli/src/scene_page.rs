@@ -6,7 +6,7 @@ use teeter_scenario::keys::{Key, Kind, Occurrence, OnlyWith, Presence, Range, TA
 use teeter_scenario::units;
 
 /// A scene as an example.
-const EXAMPLE: &str = include_str!("../../../scenarios/free-rocking-on-beam.toml");
+const EXAMPLE: &str = include_str!("../scenes/free-rocking-on-beam.toml");
 
 const HEAD: &str = "\
 <!-- Made by `teeter schema --format markdown`; to change it, change the table of keys in crates/scenario/src/table.rs. -->

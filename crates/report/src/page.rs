@@ -24,6 +24,7 @@ mod rocking;
 mod scenery;
 mod span;
 mod thrust;
+mod vtk;
 
 pub use accelerograms::{record_figures, record_page, spectrum_periods};
 pub use chain::{Joint, ThrustLine, thrust_lines};
@@ -33,6 +34,7 @@ pub(crate) use recorder::Kept;
 pub use recorder::PageRecorder;
 pub use rocking::{HalfCycle, half_cycles};
 pub use teeter_plot::escaped;
+pub use vtk::{VTK_SERIES, VtkRecorder};
 
 /// A number with so many significant digits: what the page shows needs no more, and a shorter page loads faster.
 fn rounded(x: f64, digits: usize) -> f64 {

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// The files that a run may write; which of the figures, depends on its scene. They are removed in this order: no summary
 /// outlives a table, and while there is anything, `scene.toml` says of what.
-pub const FILES: [&str; 20] = [
+pub const FILES: [&str; 21] = [
     CHECKPOINT,
     "summary.json",
     "trajectory.csv",
@@ -29,6 +29,7 @@ pub const FILES: [&str; 20] = [
     "figures/phase.svg",
     "figures/records.svg",
     "figures/spectra.svg",
+    "vtk/scene.pvd",
     "scene.toml",
 ];
 
@@ -103,12 +104,14 @@ pub struct Reserved {
 }
 
 /// Files that only one command writes.
-const MARKS: [(&str, &str); 5] = [
+const MARKS: [(&str, &str); 7] = [
     ("trajectory.csv", "`teeter run`"),
     ("summary.json", "`teeter run`"),
     (CHECKPOINT, "`teeter run`"),
     ("tradeoff.json", "`teeter tradeoff`"),
     ("sweep.json", "`teeter sweep`"),
+    ("compare.json", "`teeter compare`"),
+    ("fit.json", "`teeter fit`"),
 ];
 
 /// The lock of a folder for results.

@@ -32,6 +32,7 @@ pub struct RunJob {
     pub(crate) dump: Option<PathBuf>,
     pub(crate) horizon: bool,
     pub(crate) report: bool,
+    pub(crate) vtk: bool,
     extent: Extent,
     pub(crate) program: Option<[u8; 32]>,
 }
@@ -50,9 +51,17 @@ impl RunJob {
             dump: None,
             horizon: false,
             report: true,
+            vtk: false,
             extent: Extent::default(),
             program: None,
         }
+    }
+
+    /// Also writes pictures of the run as VTK files, to the subfolder `vtk`; `scene.pvd` there lists
+    /// them.
+    pub fn with_vtk(mut self) -> Self {
+        self.vtk = true;
+        self
     }
 
     /// Overrides the key `path` of the scene, such as `beam.table.thickness`, by `value`, such as

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use teeter_integrator::{Ended, State};
 use teeter_report::{
     CHECKPOINT, EndedWord, Exporter, Former, Origin, PageRecorder, Record, Results, ResultsError, RunRecorder, Summary,
-    columns, envelopes, figures, render,
+    VtkRecorder, columns, envelopes, figures, render,
 };
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
@@ -60,6 +60,7 @@ impl FinishedRun {
 struct RecordedRun {
     record: Record,
     page: PageRecorder,
+    vtk: Option<VtkRecorder>,
     exporter: Option<Exporter>,
     ended: EndedWord,
     /// Time of its steps, s.
@@ -153,7 +154,11 @@ impl Prepared {
             recorder = recorder.until(Arc::clone(&cancel));
             self.simulation.cancelled_by(cancel);
         }
-        let ran = self.simulation.run(&mut [&mut recorder, &mut teller]);
+        let mut vtk = self.job.vtk.then(|| VtkRecorder::new(scene, layout, scene.every));
+        let ran = match &mut vtk {
+            None => self.simulation.run(&mut [&mut recorder, &mut teller]),
+            Some(vtk) => self.simulation.run(&mut [&mut recorder, &mut teller, vtk]),
+        };
         teller.tell(&self.simulation.state);
         let seconds = recorder.seconds();
         let (mut record, page, exporter) = recorder.into_parts();
@@ -174,7 +179,7 @@ impl Prepared {
             },
             Err(error) => return Err(RunError::Steps(error)),
         };
-        Ok(RecordedRun { record, page, exporter, ended, seconds })
+        Ok(RecordedRun { record, page, vtk, exporter, ended, seconds })
     }
 }
 
@@ -188,9 +193,13 @@ fn write(
     scene_as_run: &str,
     report: bool,
 ) -> Result<Summary, RunError> {
-    let RecordedRun { record, page, ended, seconds, .. } = recorded;
+    let RecordedRun { record, page, vtk, ended, seconds, .. } = recorded;
     let summary = Summary::new(scene, layout, state, &record, ended, seconds);
-    let written = write_files(results, &record, scene, layout, &page, &summary, report.then_some(scene_as_run));
+    let pictures = vtk.iter().flat_map(VtkRecorder::files);
+    let pictures = pictures.map(|(name, text)| results.write(&name, text).map_err(RunError::Write));
+    let written = pictures
+        .collect::<Result<(), RunError>>()
+        .and_then(|()| write_files(results, &record, scene, layout, &page, &summary, report.then_some(scene_as_run)));
     match written {
         // There is no room for these either; the summary still has the reason.
         Err(RunError::Write(error)) if ended == EndedWord::DiskFull && error.is_disk_full() => {}

@@ -13,11 +13,14 @@
 
 mod accuracy;
 mod axes;
+pub mod compare;
 mod comparison;
 mod divergence;
 mod errors;
 mod first_steps;
+pub mod fit;
 mod horizon;
+pub mod measured;
 mod recommend;
 mod reference;
 mod row;

@@ -74,7 +74,7 @@ fn check_refusal(what: &str, folder: &Path, output: &Output, took: Duration) -> 
     let internal = regex::Regex::new("[A-Z][A-Za-z0-9]+ \\{ [a-z_]+: ").unwrap();
     assert!(!internal.is_match(&message), "{what} shows internals: {message}");
     assert!(message.len() < 20_000, "{what}: {} bytes flood the terminal", message.len());
-    let given = ["scene.toml", "quake.csv", "shape.csv"];
+    let given = ["scene.toml", "quake.csv", "shape.csv", "measured.csv"];
     let left: Vec<_> = files(folder).into_iter().filter(|name| !given.contains(&name.as_str())).collect();
     assert!(left.is_empty(), "{what} left {left:?}");
     message
@@ -99,6 +99,7 @@ fn run_row(row: &Row, missing: &mut String) -> String {
         Input::Stack(changes) => (edited(&what, STACKED.to_owned(), changes), &[]),
         Input::Pile(changes) => (edited(&what, PILE.to_owned(), changes), &[]),
         Input::Text(text) => ((*text).to_owned(), &[]),
+        Input::Measured(_) => (base(), &[]),
         Input::Record(record) => {
             if let Some(record) = record {
                 std::fs::write(folder.join("quake.csv"), record).unwrap();
@@ -112,9 +113,15 @@ fn run_row(row: &Row, missing: &mut String) -> String {
         }
     };
     std::fs::write(folder.join("scene.toml"), text).unwrap();
+    let mut named = "scene.toml";
     let mut arguments = vec![if row.warns { "check" } else { "run" }, "scene.toml"];
     for set in sets {
         arguments.extend(["--set", set]);
+    }
+    if let Input::Measured(table) = &row.input {
+        std::fs::write(folder.join("measured.csv"), table).unwrap();
+        arguments = vec!["fit", "scene.toml", "measured.csv", "--vary", "contact.feet.friction=0.2..0.9"];
+        named = "measured.csv";
     }
     let clock = Instant::now();
     let output = teeter(&folder, &arguments);
@@ -124,7 +131,7 @@ fn run_row(row: &Row, missing: &mut String) -> String {
     } else {
         check_refusal(&what, &folder, &output, clock.elapsed())
     };
-    for part in row.says.iter().chain(&["scene.toml"]) {
+    for part in row.says.iter().chain(&[named]) {
         if !message.contains(part) {
             let _ = writeln!(missing, "{what}: «{part}» is missing in\n{message}");
         }

@@ -18,6 +18,8 @@ pub(crate) enum Input {
     Record(Option<&'static str>),
     /// The base scene with two elements, that start in the shape of this file.
     Shape(&'static str),
+    /// The base scene, to be fitted to this table of measured motion.
+    Measured(&'static [u8]),
 }
 
 pub(crate) struct Row {
@@ -30,7 +32,7 @@ pub(crate) struct Row {
     pub(crate) warns: bool,
 }
 
-use Input::{Edit, Pile, Record, Set, Shape, Stack, Text};
+use Input::{Edit, Measured, Pile, Record, Set, Shape, Stack, Text};
 
 const fn refused(number: u32, what: &'static str, input: Input, says: &'static [&'static str]) -> Row {
     Row { number, what, input, says, warns: false }
@@ -151,6 +153,7 @@ pub(crate) fn rows() -> Vec<Row> {
     rows.extend(laws());
     rows.extend(beams());
     rows.extend(crowds());
+    rows.extend(measured());
     rows
 }
 
@@ -370,5 +373,26 @@ fn crowds() -> Vec<Row> {
         refused(53, "seed that is no whole number", Pile(&[(REPEAT, "[\"0 cm\", \"12 cm\"], jitter = [\"1 mm\", \"1 mm\"], seed = 1.5 }")]), &["block.stone.repeat.seed = 1.5"]),
         refused(53, "negative seed", Pile(&[(REPEAT, "[\"0 cm\", \"12 cm\"], jitter = [\"1 mm\", \"1 mm\"], seed = -1 }")]), &["block.stone.repeat.seed = -1"]),
         warned(53, "seed of nothing random", Pile(&[(REPEAT, "[\"0 cm\", \"12 cm\"], seed = 1 }")]), &["warning: block.stone.repeat.seed", "nothing is random"]),
+    ]
+}
+
+/// Tables of measured motion.
+#[rustfmt::skip] // a row a line
+fn measured() -> Vec<Row> {
+    vec![
+        refused(39, "empty measured table", Measured(b""), &["the file is empty"]),
+        refused(39, "measured table of comments", Measured(b"# t,phi\n\n"), &["the file is empty"]),
+        refused(39, "measured table without rows", Measured(b"t,phi\n"), &["there is a heading, but no row of numbers"]),
+        refused(40, "measured table that is a picture", Measured(b"\x89PNG\r\n\x1a\n"), &["not a text file in UTF-8"]),
+        refused(45, "measured angle that is no number", Measured(b"t,phi\n0,0.1\n1,nan\n"), &["line 3", "`nan`", "lost frame"]),
+        refused(45, "measured word", Measured(b"t,phi\n0,0.1\n1,high\n"), &["line 3", "`high`"]),
+        refused(45, "measured times that go back", Measured(b"t,phi\n0,0.1\n1,0.1\n0.5,0.1\n"), &["line 4", "t = 0.5 s"]),
+        refused(45, "one measured row", Measured(b"t,phi\n0,0.1\n"), &["phi has 1 value"]),
+        refused(45, "ragged measured table", Measured(b"t,phi\n0,0.1\n1\n"), &["line 3", "1 column"]),
+        refused(29, "measured angle in kg", Measured(b"t,phi [kg]\n0,0.1\n"), &["the unit `kg` of phi"]),
+        refused(30, "measured angle in furlongs", Measured(b"t,phi [furlong]\n0,0.1\n"), &["the unit `furlong` of phi"]),
+        refused(28, "measured column of another name", Measured(b"t,angle\n0,0.1\n"), &["`angle`", "--column phi"]),
+        refused(28, "measured columns without names", Measured(b"0,0.1\n1,0.1\n"), &["2 columns without headings"]),
+        refused(19, "measured angles in degrees", Measured(b"t,phi\n0,5\n1,5\n2,5\n3,4\n4,3\n5,1\n6,-1\n7,-3\n8,-4\n"), &["line 2", "--unit phi=deg"]),
     ]
 }

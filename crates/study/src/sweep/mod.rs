@@ -15,11 +15,11 @@ mod find;
 mod identity;
 mod journal;
 mod listing;
-mod number;
+pub(crate) mod number;
 mod output;
-mod sample;
+pub(crate) mod sample;
 mod shard;
-mod spec;
+pub(crate) mod spec;
 
 pub use case::{CaseRow, CaseStatus, run_cases};
 pub use figures::{Ensemble, FIGURE_FILES, StudyFigure, StudyTable, TableError, study_figures, study_page};

@@ -1,0 +1,133 @@
+//! The measured table of `teeter compare` and `teeter fit`, and how it is laid out.
+
+use crate::render::Presenter;
+use clap::Args;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use teeter_scenario::dimension::Dimension;
+use teeter_scenario::quantity;
+use teeter_study::compare::AlignmentSettings;
+use teeter_study::measured::{ColumnLayout, LARGEST_FILE, LEAST_WINDOW, Measured, Sign};
+
+/// Options that say where the quantities stand in a table of measured motion.
+#[derive(Args, Debug)]
+pub(crate) struct MeasuredOptions {
+    /// Table of measured motion (CSV): columns t and phi, or others as told below; docs/compare.md
+    #[arg(value_name = "MEASURED.csv")]
+    pub(crate) measured: PathBuf,
+    /// How the table is laid out: a TOML file with columns, units, markers
+    #[arg(long, value_name = "FILE.toml")]
+    columns: Option<PathBuf>,
+    /// The column of t, phi, omega, x, y, vx or vy, by its heading or number, such as phi="Angle";
+    /// may be repeated
+    #[arg(long = "column", value_name = "NAME=COLUMN", value_parser = crate::key_value)]
+    column: Vec<(String, String)>,
+    /// The unit of a column that has none in its heading, such as phi=deg; may be repeated
+    #[arg(long = "unit", value_name = "NAME=UNIT", value_parser = crate::key_value)]
+    unit: Vec<(String, String)>,
+    /// Rows per second, for a table without times or with numbers of frames, such as "165 Hz"
+    #[arg(long, value_name = "RATE", value_parser = rate)]
+    rate: Option<f64>,
+    /// The block that was measured (default: the only one)
+    #[arg(long, value_name = "NAME")]
+    pub(crate) block: Option<String>,
+    /// Time of the simulated motion at t = 0 of the table, such as "-1.2 s" (default: found)
+    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
+    shift: Option<f64>,
+    /// 1: seen as in the scene, -1: seen from behind, so that x and phi have the opposite sign
+    /// (default: found)
+    #[arg(long, value_name = "1|-1", value_parser = sign, allow_hyphen_values = true)]
+    sign: Option<Sign>,
+    /// Rows of the window through which both motions are smoothed and rates are found
+    #[arg(long, value_name = "ROWS", default_value = "5", value_parser = window)]
+    pub(crate) window: usize,
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    match quantity::parse(text, Dimension::RATE) {
+        Ok(rate) if rate > 0.0 => Ok(rate),
+        Ok(_) => Err("must be positive, such as \"165 Hz\"".to_owned()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    quantity::parse(text, Dimension::TIME).map_err(|error| error.to_string())
+}
+
+/// An angle with its unit.
+pub(crate) fn angle(text: &str) -> Result<f64, String> {
+    quantity::parse(text, Dimension::ANGLE).map_err(|error| error.to_string())
+}
+
+fn sign(text: &str) -> Result<Sign, String> {
+    match text {
+        "1" | "+1" => Ok(Sign::AsIs),
+        "-1" => Ok(Sign::Reversed),
+        _ => Err("1 or -1 is expected".to_owned()),
+    }
+}
+
+fn window(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(rows) if rows >= LEAST_WINDOW && rows % 2 == 1 && rows <= 999 => Ok(rows),
+        _ => Err(format!("an odd number of rows from {LEAST_WINDOW} to 999 is expected")),
+    }
+}
+
+impl MeasuredOptions {
+    /// What is given of the alignment.
+    pub(crate) fn alignment(&self) -> AlignmentSettings {
+        AlignmentSettings { shift: self.shift, sign: self.sign }
+    }
+
+    /// The files that are read.
+    pub(crate) fn inputs(&self) -> Vec<PathBuf> {
+        self.columns.iter().cloned().chain([self.measured.clone()]).collect()
+    }
+
+    /// Reads the table; `block` is that of the run or scene.
+    ///
+    /// # Errors
+    /// The text to print.
+    pub(crate) fn read(&self, block: &str) -> Result<Measured, String> {
+        let mut layout = match &self.columns {
+            None => ColumnLayout::default(),
+            Some(path) => {
+                let name = path.display().to_string();
+                let bytes = bytes(path)?;
+                let text = String::from_utf8(bytes).map_err(|_| format!("error: {name}: not a text file in UTF-8"))?;
+                ColumnLayout::read(&text, &name).map_err(|found| Presenter::new(&text).all(&found))?
+            }
+        };
+        let usage = |option: &str, why: String| format!("error: --{option}: {why}");
+        for (name, column) in &self.column {
+            layout.set_column(name, column).map_err(|why| usage("column", why))?;
+        }
+        for (name, unit) in &self.unit {
+            layout.set_unit(name, unit).map_err(|why| usage("unit", why))?;
+        }
+        layout.rate = self.rate.or(layout.rate);
+        let bytes = bytes(&self.measured)?;
+        Measured::read(&bytes, &layout, block).map_err(|error| format!("error: {}: {error}", self.measured.display()))
+    }
+}
+
+/// The bytes of a file; of one that is too large only enough to notice.
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, String> {
+    let told = |error: &str| format!("error: {}: {error}", path.display());
+    match std::fs::metadata(path) {
+        Ok(found) if found.is_dir() => return Err(told("is a folder, not a file")),
+        Ok(found) if !found.is_file() => return Err(told("is a pipe or a device: give a regular file")),
+        _ => {}
+    }
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(LARGEST_FILE as u64 + 1).read_to_end(&mut bytes));
+    read.map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => told("there is no such file"),
+        std::io::ErrorKind::PermissionDenied => told("no permission to read it"),
+        _ => told(&format!("can't be read: {error}")),
+    })?;
+    Ok(bytes)
+}

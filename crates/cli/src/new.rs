@@ -1,0 +1,111 @@
+//! `teeter new`: commented scenes to start from.
+
+use crate::console::{Console, print_all};
+use crate::run::Exit;
+use std::fs::File;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use teeter_scenario::suggest::nearest;
+
+/// The scenes by name. Each stands on its own: none names another file.
+const SCENES: [(&str, &str); 21] = [
+    ("column-of-drums", include_str!("../scenes/column-of-drums.toml")),
+    ("compliant-drop", include_str!("../scenes/compliant-drop.toml")),
+    ("domino", include_str!("../scenes/domino.toml")),
+    ("drop", include_str!("../scenes/drop.toml")),
+    ("dry-stone-wall", include_str!("../scenes/dry-stone-wall.toml")),
+    ("free-rocking-on-beam", include_str!("../scenes/free-rocking-on-beam.toml")),
+    ("free-rocking-on-beam-undeformed-start", include_str!("../scenes/free-rocking-on-beam-undeformed-start.toml")),
+    ("free-rocking-on-ground", include_str!("../scenes/free-rocking-on-ground.toml")),
+    ("held-beam", include_str!("../scenes/held-beam.toml")),
+    ("incline", include_str!("../scenes/incline.toml")),
+    ("lintel", include_str!("../scenes/lintel.toml")),
+    ("masonry-arch", include_str!("../scenes/masonry-arch.toml")),
+    ("newtons-cradle", include_str!("../scenes/newtons-cradle.toml")),
+    ("overhang", include_str!("../scenes/overhang.toml")),
+    ("pile-of-polygons", include_str!("../scenes/pile-of-polygons.toml")),
+    ("pushed-block", include_str!("../scenes/pushed-block.toml")),
+    ("shaken-ground", include_str!("../scenes/shaken-ground.toml")),
+    ("sliding", include_str!("../scenes/sliding.toml")),
+    ("stack-of-blocks", include_str!("../scenes/stack-of-blocks.toml")),
+    ("two-blocks-on-beam", include_str!("../scenes/two-blocks-on-beam.toml")),
+    ("two-span-beam", include_str!("../scenes/two-span-beam.toml")),
+];
+
+/// The scene written if none is chosen.
+pub(crate) const DEFAULT: &str = "free-rocking-on-beam";
+
+#[derive(Debug)]
+pub(crate) struct Options {
+    /// The file to write; `-`: standard output.
+    pub(crate) file: Option<PathBuf>,
+    pub(crate) from: String,
+    pub(crate) list: bool,
+    pub(crate) force: bool,
+}
+
+pub(crate) fn new(options: &Options) -> Exit {
+    let console = Console::new(false);
+    if options.list {
+        return print_all(&list());
+    }
+    let bad_input = |text: String| {
+        console.error(&text);
+        Exit::BadInput
+    };
+    let Some((name, scene)) = SCENES.iter().find(|(name, _)| *name == options.from) else {
+        let near = nearest(&options.from, SCENES.iter().map(|(name, _)| *name));
+        let near = near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
+        return bad_input(format!("error: no scene `{}`{near}\n  help: `teeter new --list` lists them", options.from));
+    };
+    match &options.file {
+        Some(file) if file == Path::new("-") => print_all(scene),
+        Some(file) => match write(file, scene, options.force) {
+            Ok(()) => {
+                let file = file.display();
+                console.note(&format!("{file}: a copy of {name}; next: teeter check {file}, teeter run {file}"));
+                Exit::FinishedRun
+            }
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+                bad_input(format!("error: {} exists already; --force replaces it", file.display()))
+            }
+            Err(error) => bad_input(format!("error: can't write {}: {error}", file.display())),
+        },
+        None => bad_input("error: which file? Write teeter new FILE.toml, or - for standard output".to_owned()),
+    }
+}
+
+/// Writes a file; one that exists stays unless it may be replaced.
+fn write(path: &Path, text: &str, force: bool) -> std::io::Result<()> {
+    let mut file = if force { File::create(path)? } else { File::create_new(path)? };
+    file.write_all(text.as_bytes())?;
+    file.sync_all()
+}
+
+/// Names and titles.
+fn list() -> String {
+    let widest = SCENES.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let line = |(name, scene): &(&str, &str)| format!("{name:widest$}  {}\n", title(scene));
+    SCENES.iter().map(line).collect()
+}
+
+fn title(scene: &str) -> &str {
+    let line = scene.lines().find(|line| line.starts_with("title")).unwrap_or_default();
+    line.split('"').nth(1).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn every_scene_has_a_title_and_needs_no_other_file() {
+        for (name, scene) in SCENES {
+            assert!(!title(scene).is_empty(), "{name}");
+            let loaded = teeter_scenario::load(scene.as_bytes(), name, name, &[]);
+            assert!(loaded.is_ok(), "{name}: {}", loaded.unwrap_err());
+        }
+        assert!(SCENES.iter().any(|(name, _)| *name == DEFAULT));
+    }
+}

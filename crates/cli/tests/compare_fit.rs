@@ -1,0 +1,347 @@
+//! `teeter compare` and `teeter fit`, with measured motion made from runs of our own: sampled at 165
+//! frames per second, with noise, in another time, frame and sign.
+
+#![allow(clippy::unwrap_used)] // a test
+
+use serde_json::Value;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("compare-{name}"));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn teeter(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_teeter")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn done(folder: &Path, arguments: &[&str]) -> String {
+    let output = teeter(folder, arguments);
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{arguments:?}: {told}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn read(path: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+/// Nearly normal noise of unit deviation, the same in every run.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        let mut uniform = || {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+}
+
+/// Frames of a run: time in the run, x, y, φ, from 0.1 s before its start on.
+fn frames(run: &Path, block: &str) -> Vec<[f64; 4]> {
+    let text = std::fs::read_to_string(run.join("trajectory.csv")).unwrap();
+    let mut lines = text.lines();
+    let heading: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let place = |name: &str| heading.iter().position(|cell| *cell == format!("{block}.{name}")).unwrap();
+    let places = [0, place("x"), place("y"), place("phi")];
+    let rows: Vec<[f64; 4]> = lines
+        .map(|line| {
+            let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+            places.map(|place| cells[place])
+        })
+        .collect();
+    let end = rows.last().unwrap()[0];
+    let frames = (0..).map(|k| f64::from(k) / 165.0 - 0.1).take_while(|t| *t <= end);
+    // Rows are 0.1 ms apart: what lies between is a line to 1e-6 of the motion.
+    let at = |t: f64| {
+        let after = rows.partition_point(|row| row[0] <= t).clamp(1, rows.len() - 1);
+        let (a, b) = (rows[after - 1], rows[after]);
+        let s = ((t - a[0]) / (b[0] - a[0])).clamp(0.0, 1.0);
+        [t, a[1] + s * (b[1] - a[1]), a[2] + s * (b[2] - a[2]), a[3] + s * (b[3] - a[3])]
+    };
+    frames.map(at).collect()
+}
+
+fn scenario(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(name);
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn a_run_seen_from_behind_at_another_time_is_recognised() {
+    let folder = folder("angle");
+    let scene = scenario("free-rocking-on-beam.toml");
+    done(&folder, &["run", &scene, "--out", "run", "--quiet", "--horizon", "--set", "output.every=0.1 ms"]);
+    let mut noise = Noise(1);
+    let mut text = "recorded by us\nTime (ms);\"Angle, left\" (deg);quality\n".to_owned();
+    let sampled = frames(&folder.join("run"), "rocker");
+    for (k, [t, .., phi]) in sampled.iter().enumerate() {
+        let angle = -phi.to_degrees() + 0.4 + 0.03 * noise.next();
+        let cell = if k == 50 { String::new() } else { format!("{angle:.4}").replace('.', ",") };
+        writeln!(text, "{:.3};{cell};good", 1e3 * (t + 7.3)).unwrap();
+    }
+    std::fs::write(folder.join("camera.csv"), text).unwrap();
+    let layout = "skip = 1\n[columns]\nt = \"Time\"\nphi = \"Angle, left\"\n";
+    std::fs::write(folder.join("camera.toml"), layout).unwrap();
+    let arguments = ["compare", "run", "camera.csv", "--columns", "camera.toml", "--offset", "0.4 deg", "--out", "all"];
+    let told = done(&folder, &arguments);
+    assert!(told.contains("impacts: 3 measured, 3 simulated, 3 paired"), "{told}");
+    let found = read(&folder.join("all/compare.json"));
+    assert_eq!(found["sign"], -1.0);
+    assert!((found["time_shift"].as_f64().unwrap() + 7.3).abs() < 5e-4, "{found}");
+    let phi = &found["quantities"]["phi"];
+    let degrees = |name: &str| phi[name].as_f64().unwrap().to_degrees();
+    // From some 20 windows that don't overlap, of two degrees of freedom each, by their median: known to
+    // about 16 %; twice and a half that is allowed.
+    assert!((degrees("noise") - 0.03).abs() < 0.012, "{phi}");
+    // A parabola through five rows keeps 0.7 of the noise; smoothing is the same for both motions.
+    assert!(degrees("rms") < 0.03 && degrees("max") < 0.12, "{phi}");
+    let omega = &found["quantities"]["omega"];
+    assert!(omega["measured"] == false && omega["rms_relative"].as_f64().unwrap() < 0.03, "{omega}");
+    for pair in found["half_cycles"].as_array().unwrap() {
+        assert!((pair["amplitude_ratio"].as_f64().unwrap() - 1.0).abs() < 0.03, "{pair}");
+        assert!(pair["phase_degrees"].as_f64().is_none_or(|phase| phase.abs() < 2.0), "{pair}");
+    }
+    let rows = std::fs::read_to_string(folder.join("all/compare.csv")).unwrap();
+    assert_eq!(rows.lines().count(), 1 + sampled.len());
+    assert!(rows.starts_with("t,t_measured,phi_measured,phi_simulated,omega_measured,omega_simulated,compared\n"));
+    let page = std::fs::read_to_string(folder.join("all/compare.html")).unwrap();
+    assert!(page.contains("<svg") && page.contains("Half-cycles") && !page.contains("http://www.w3.org/1999"));
+    assert!(folder.join("all/figures/omega.svg").exists());
+    let again = teeter(&folder, &arguments);
+    assert_eq!(again.status.code(), Some(2), "results are not replaced without --force");
+}
+
+#[test]
+fn markers_on_the_block_give_its_motion_and_a_wrong_model_shows() {
+    let folder = folder("markers");
+    let scene = scenario("free-rocking-on-beam.toml");
+    done(&folder, &["run", &scene, "--out", "run", "--quiet", "--set", "output.every=0.1 ms"]);
+    let mut noise = Noise(2);
+    let mut text = String::new();
+    let body = [[-0.01, 0.05], [0.012, 0.055], [0.0, -0.04]];
+    for [_, x, y, phi] in frames(&folder.join("run"), "rocker") {
+        let cells = body.map(|[a, b]| {
+            let seen = [x + a * phi.cos() - b * phi.sin(), y + a * phi.sin() + b * phi.cos()];
+            // Pixels of 0.2 mm from the upper left corner.
+            let pixel = |value: f64, noise: &mut Noise| value / 2e-4 + 0.2 * noise.next();
+            format!("{:.3} {:.3}", pixel(seen[0], &mut noise), 900.0 + pixel(-seen[1], &mut noise))
+        });
+        writeln!(text, "{}", cells.join("  ")).unwrap();
+    }
+    std::fs::write(folder.join("pixels.txt"), text).unwrap();
+    let mut layout = "rate = \"165 Hz\"\ny_down = true\n".to_owned();
+    for (k, [a, b]) in body.iter().enumerate() {
+        writeln!(
+            layout,
+            "[marker.m{k}]\nx = {}\ny = {}\nunit = \"mm\"\nat = [\"{} mm\", \"{} mm\"]",
+            2 * k + 1,
+            2 * k + 2,
+            5e3 * a,
+            5e3 * b
+        )
+        .unwrap();
+    }
+    std::fs::write(folder.join("pixels.toml"), layout).unwrap();
+    // A pixel counts as a millimetre: the body is five times as large, so positions can't match, but the
+    // angle does.
+    done(&folder, &["compare", "run", "pixels.txt", "--columns", "pixels.toml", "--out", "all"]);
+    let found = read(&folder.join("all/compare.json"));
+    assert!((found["time_shift"].as_f64().unwrap() + 0.1).abs() < 1e-3, "{found}");
+    assert!(found["quantities"]["phi"]["rms"].as_f64().unwrap().to_degrees() < 0.15);
+    let markers = &found["markers"];
+    assert_eq!((markers["count"].as_u64(), markers["placed"].as_bool()), (Some(3), Some(true)));
+    assert!((markers["rms"].as_f64().unwrap() - 2e-4).abs() < 1e-4, "0.2 pixels of noise: {markers}");
+    // Let go from another angle it moves differently, and that shows.
+    done(&folder, &["run", &scene, "--out", "other", "--quiet", "--set", "block.rocker.tilt=4 deg"]);
+    done(
+        &folder,
+        &[
+            "compare",
+            "other",
+            "pixels.txt",
+            "--columns",
+            "pixels.toml",
+            "--out",
+            "wrong",
+            "--shift",
+            "-0.1 s",
+            "--sign",
+            "1",
+        ],
+    );
+    let wrong = read(&folder.join("wrong/compare.json"));
+    assert!(wrong["quantities"]["phi"]["rms_relative"].as_f64().unwrap() > 0.1, "{wrong}");
+}
+
+/// A block that bounces on a springy table, in which both the restitution and the damping of the
+/// table matter for its motion, and which is predictable to its end.
+const BOUNCING: &str = "title = \"A block bounces on a springy table\"\n\
+    [time]\nend = \"0.4 s\"\nstep = \"100 us\"\n\
+    [material.aluminium]\ndensity = \"2700 kg/m^3\"\nyoungs_modulus = \"69 GPa\"\n\
+    [material.wood]\ndensity = \"600 kg/m^3\"\n\
+    [beam.table]\nmaterial = \"aluminium\"\nspan = \"36 cm\"\nwidth = \"3 cm\"\nthickness = \"2 mm\"\nelements = 12\n\
+    model = \"modes\"\nmodes = { count = 1 }\ndamping_ratio = { mode = 1, ratio = 0.01 }\n\
+    [block.cube]\nmaterial = \"wood\"\nwidth = \"3 cm\"\nheight = \"3 cm\"\ndepth = \"3 cm\"\n\
+    position = [\"18 cm\", \"3.5 cm\"]\nangle = \"3 deg\"\n\
+    [contact.feet]\nbetween = [\"cube\", \"table\"]\nfriction = 0.5\nrestitution = 0.3\n\
+    [output]\nevery = \"0.1 ms\"\n";
+
+#[test]
+fn restitution_and_damping_come_back_within_two_percent() {
+    let folder = folder("fit");
+    std::fs::write(folder.join("scene.toml"), BOUNCING).unwrap();
+    let truth = ["--set", "contact.feet.restitution=0.6", "--set", "beam.table.damping_ratio.ratio=0.05"];
+    done(&folder, &[&["run", "scene.toml", "--out", "truth", "--quiet"], &truth[..]].concat());
+    let mut noise = Noise(3);
+    let mut text = "t,phi [deg],x [mm],y [mm]\n".to_owned();
+    for [t, x, y, phi] in frames(&folder.join("truth"), "cube") {
+        let angle = phi.to_degrees() + 0.3 + 0.03 * noise.next();
+        let place = [1e3 * x - 40.0, 1e3 * y + 7.0].map(|value| value + 0.05 * noise.next());
+        writeln!(text, "{:.6},{angle:.4},{:.4},{:.4}", t + 2.0, place[0], place[1]).unwrap();
+    }
+    std::fs::write(folder.join("camera.csv"), text).unwrap();
+    let told = done(
+        &folder,
+        &[
+            "fit",
+            "scene.toml",
+            "camera.csv",
+            "--out",
+            "fitted",
+            "--quiet",
+            "--vary",
+            "contact.feet.restitution=0..0.9",
+            "beam.table.damping_ratio.ratio=0.005..0.2",
+        ],
+    );
+    let found = read(&folder.join("fitted/fit.json"));
+    let estimates = found["estimates"].as_array().unwrap();
+    for (name, exact, within) in [
+        ("contact.feet.restitution", 0.6, 0.02 * 0.6),
+        ("beam.table.damping_ratio.ratio", 0.05, 0.02 * 0.05),
+        ("time shift", -2.0, 5e-4),
+        ("zero of the angle", 0.3_f64.to_radians(), 0.05_f64.to_radians()),
+    ] {
+        let estimate = estimates.iter().find(|estimate| estimate["name"] == name).unwrap();
+        let value = estimate["value"].as_f64().unwrap();
+        assert!((value - exact).abs() < within, "{name}: {value}\n{told}");
+        // Five standard errors: the interval is neither far too narrow nor of no use.
+        let error = estimate["standard_error"].as_f64().unwrap();
+        assert!((value - exact).abs() < 5.0 * error && error < within, "{name}: {value} ± {error}");
+    }
+    // The noise of samples is estimated from parabolas, and a bouncing motion is none within seven
+    // frames: the estimate is too large, and what is left below one. A misfit would leave far more.
+    let left = found["mean_square_over_noise"].as_f64().unwrap();
+    assert!((0.3..1.5).contains(&left), "what is left is noise: {left}");
+    // The fitted scene runs, and moves as fitted.
+    done(&folder, &["run", "fitted/scene.toml", "--out", "again", "--quiet"]);
+    done(&folder, &["compare", "again", "camera.csv", "--out", "compared", "--quiet", "--offset", "0.3 deg"]);
+    let compared = read(&folder.join("compared/compare.json"));
+    assert!(compared["quantities"]["phi"]["rms_relative"].as_f64().unwrap() < 0.03, "{compared}");
+}
+
+#[test]
+fn keys_that_trade_off_are_told() {
+    let folder = folder("trade-off");
+    let scene = std::fs::read_to_string(scenario("free-rocking-on-beam.toml")).unwrap();
+    // A material of its own for the block: only the product of its density and depth matters.
+    let scene = scene.replace(
+        "[block.rocker]\nmaterial = \"aluminium\"",
+        "[material.brass]\ndensity = \"2700 kg/m^3\"\n\n[block.rocker]\nmaterial = \"brass\"",
+    );
+    std::fs::write(folder.join("scene.toml"), scene).unwrap();
+    done(
+        &folder,
+        &["run", "scene.toml", "--out", "truth", "--quiet", "--set", "output.every=0.1 ms", "--set", "time.end=0.3 s"],
+    );
+    let mut noise = Noise(4);
+    let mut text = "t,phi [deg]\n".to_owned();
+    for [t, .., phi] in frames(&folder.join("truth"), "rocker") {
+        writeln!(text, "{t:.6},{:.4}", phi.to_degrees() + 0.02 * noise.next()).unwrap();
+    }
+    std::fs::write(folder.join("camera.csv"), text).unwrap();
+    let told = done(
+        &folder,
+        &[
+            "fit",
+            "scene.toml",
+            "camera.csv",
+            "--out",
+            "fitted",
+            "--quiet",
+            "--set",
+            "time.end=0.3 s",
+            "--sign",
+            "1",
+            "--samples",
+            "12",
+            "--vary",
+            "block.rocker.depth=2 cm..4 cm",
+            "material.brass.density=1800..4000 kg/m^3",
+        ],
+    );
+    assert!(told.contains("block.rocker.depth and material.brass.density trade off (correlation -"), "{told}");
+    assert!(told.contains("hardly determines block.rocker.depth"), "{told}");
+    // The product is known all the same.
+    let found = read(&folder.join("fitted/fit.json"));
+    let value = |k: usize| found["estimates"][k]["value"].as_f64().unwrap();
+    assert!((value(0) * value(1) / (3.0 * 2700.0) - 1.0).abs() < 0.05, "{found}");
+}
+
+#[test]
+fn bad_measured_tables_are_refused_with_their_line() {
+    let folder = folder("bad");
+    let scene = scenario("free-rocking-on-ground.toml");
+    done(&folder, &["run", &scene, "--out", "run", "--quiet", "--no-report", "--set", "time.end=0.2 s"]);
+    let rows: String = (0..20).map(|k| format!("{},0.0{k}\n", 0.01 * f64::from(k))).collect();
+    let tables: [(&str, Vec<u8>, &str); 12] = [
+        ("empty", Vec::new(), "the file is empty"),
+        ("comments", b"# a\n# b\n".to_vec(), "the file is empty"),
+        ("binary", vec![0x89, b'P', b'N', b'G', 0xff], "not a text file in UTF-8"),
+        ("nan", format!("t,phi\n{rows}0.5,nan\n").into_bytes(), "line 22: `nan` in column 2 (phi) is not a number"),
+        ("word", format!("t,phi\n{rows}0.5,high\n").into_bytes(), "line 22: `high` in column 2 (phi) is not a number"),
+        ("back", format!("t,phi\n{rows}0.1,0.1\n").into_bytes(), "line 22: t = 0.1 s is not after the row before"),
+        ("one-row", b"t,phi\n0,0.1\n".to_vec(), "phi has 1 value, but a motion needs 8 or more"),
+        ("ragged", format!("t,phi\n{rows}0.5\n").into_bytes(), "line 22: 1 column, but the rows before have 2"),
+        ("unit", format!("t,phi [kg]\n{rows}").into_bytes(), "the unit `kg` of phi"),
+        ("unnamed", rows.clone().into_bytes(), "the table has 2 columns without headings"),
+        ("degrees", format!("t,phi\n{rows}0.5,5.0\n").into_bytes(), "--unit phi=deg"),
+        ("other", format!("t,angel\n{rows}").into_bytes(), "no column of the motion of `rocker` is known"),
+    ];
+    let refused = |arguments: &[&str], says: &str| {
+        let output = teeter(&folder, arguments);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
+        assert!(told.contains(says) && !told.contains("panicked"), "{arguments:?}: {told}");
+        assert!(!folder.join("run-compare").exists() && !folder.join("out").exists(), "{arguments:?} wrote something");
+    };
+    for (name, bytes, says) in &tables {
+        let file = format!("{name}.csv");
+        std::fs::write(folder.join(&file), bytes).unwrap();
+        refused(&["compare", "run", &file], says);
+        refused(&["fit", &scene, &file, "--out", "out", "--vary", "contact.feet.friction=0.2..0.9"], says);
+    }
+    std::fs::write(folder.join("good.csv"), format!("t,phi\n{rows}")).unwrap();
+    std::fs::write(folder.join("layout.toml"), "sepparator = \";\"\n").unwrap();
+    refused(&["compare", "run", "missing.csv"], "there is no such file");
+    refused(&["compare", "run", "run"], "is a folder, not a file");
+    refused(&["compare", "missing", "good.csv"], "there is no such folder");
+    refused(&["compare", "run", "good.csv", "--columns", "layout.toml"], "did you mean `separator`?");
+    refused(&["compare", "run", "good.csv", "--column", "fi=phi"], "there is no quantity `fi`");
+    refused(&["compare", "run", "good.csv", "--block", "b"], "no block `b`; the run has `rocker`");
+    refused(&["compare", "run", "good.csv", "--window", "4"], "an odd number of rows");
+    refused(&["compare", "run", "good.csv", "--shift", "100 s"], "fewer than 8 rows in common");
+    let fit = |vary: &str, says: &str| refused(&["fit", &scene, "good.csv", "--out", "out", "--vary", vary], says);
+    fit("contact.feet.friction=0.9..0.2", "the lower bound of contact.feet.friction must be below the upper one");
+    fit("contact.feet.friction=-1..0.2", "must be at least 0");
+    fit("contact.feet.fricton=0.1..0.2", "did you mean `contact.feet.friction`?");
+    fit("block.rocker.height=1 mm..2 cm", "have the units `mm` and `cm`");
+    fit("contact.feet.friction", "write KEY=LOW..HIGH");
+}

@@ -1,0 +1,108 @@
+//! `teeter new`, `teeter run --watch`, completions and man pages.
+
+#![allow(clippy::unwrap_used)] // a test
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("new-{name}"));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn teeter(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_teeter")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+#[test]
+fn every_listed_scene_can_be_written_and_passes_the_check() {
+    let folder = folder("all");
+    let list = text(&teeter(&folder, &["new", "--list"]).stdout);
+    let names: Vec<&str> = list.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    assert!(names.len() > 15 && names.contains(&"masonry-arch"), "{list}");
+    for name in names {
+        let file = format!("{name}.toml");
+        assert!(teeter(&folder, &["new", &file, "--from", name]).status.success(), "{name}");
+        let written = std::fs::read_to_string(folder.join(&file)).unwrap();
+        assert!(written.starts_with('#'), "{name} begins with what it shows");
+        let checked = teeter(&folder, &["check", &file]);
+        assert!(checked.status.success(), "{name}: {}", text(&checked.stderr));
+    }
+}
+
+#[test]
+fn a_file_that_exists_is_not_replaced() {
+    let folder = folder("exists");
+    std::fs::write(folder.join("mine.toml"), "mine").unwrap();
+    let refused = teeter(&folder, &["new", "mine.toml"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("exists already; --force replaces it"));
+    assert_eq!(std::fs::read_to_string(folder.join("mine.toml")).unwrap(), "mine");
+    let unknown = teeter(&folder, &["new", "x.toml", "--from", "dropp"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(text(&unknown.stderr).contains("did you mean `drop`?"));
+    assert!(!folder.join("x.toml").exists());
+    assert!(teeter(&folder, &["new", "mine.toml", "--force"]).status.success());
+    assert!(std::fs::read_to_string(folder.join("mine.toml")).unwrap().contains("[block.rocker]"));
+}
+
+#[test]
+fn shells_and_man_know_every_command() {
+    let folder = folder("shell");
+    let commands = ["run", "check", "new", "compare", "fit", "sweep", "tradeoff", "solve", "solvers", "schema"];
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = text(&teeter(&folder, &["completions", shell]).stdout);
+        assert!(commands.iter().all(|command| script.contains(command)) && script.contains("vary"), "{shell}");
+    }
+    assert!(teeter(&folder, &["man", "pages"]).status.success());
+    for command in commands {
+        let page = std::fs::read_to_string(folder.join(format!("pages/teeter-{command}.1"))).unwrap();
+        assert!(page.contains(".SH NAME") && page.contains(".SH OPTIONS"), "{command}");
+    }
+}
+
+/// Waits for a condition.
+fn within(limit: Duration, condition: impl Fn() -> bool) -> bool {
+    let begin = Instant::now();
+    while begin.elapsed() < limit {
+        if condition() {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    false
+}
+
+#[cfg(unix)]
+#[test]
+fn a_watched_scene_runs_again_when_it_changes() {
+    let folder = folder("watch");
+    let scene = folder.join("drop.toml");
+    assert!(teeter(&folder, &["new", "drop.toml", "--from", "drop"]).status.success());
+    let mut child = Command::new(env!("CARGO_BIN_EXE_teeter"))
+        .current_dir(&folder)
+        .args(["run", "drop.toml", "--out", "out", "--watch", "--no-report"])
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let as_run = || std::fs::read_to_string(folder.join("out/scene.toml")).unwrap_or_default();
+    let ended = || folder.join("out/summary.json").exists();
+    let limit = Duration::from_secs(60);
+    assert!(within(limit, || ended() && as_run().contains("restitution = 0.8")), "the first run");
+    let text = std::fs::read_to_string(&scene).unwrap();
+    // A mistake is told, and waited for to be mended.
+    std::fs::write(&scene, text.replace("restitution = 0.8", "restitution = 8")).unwrap();
+    std::thread::sleep(Duration::from_millis(700));
+    assert!(child.try_wait().unwrap().is_none(), "it goes on after a mistake");
+    std::fs::write(&scene, text.replace("restitution = 0.8", "restitution = 0.75")).unwrap();
+    assert!(within(limit, || ended() && as_run().contains("restitution = 0.75")), "the second run");
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+}

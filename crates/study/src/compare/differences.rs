@@ -1,0 +1,101 @@
+//! How far two motions are apart, quantity by quantity.
+
+use super::{MotionTrace, sampled, unsmoothed};
+use crate::measured::{Channel, LocalFit, MeasuredMotion, local_fit};
+use std::ops::Range;
+
+/// Norms of a difference over the rows compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Differences {
+    /// Root mean square.
+    pub rms: f64,
+    /// The largest magnitude.
+    pub max: f64,
+    /// Its time, in that of the run, s.
+    pub max_at: f64,
+    /// Mean of simulated minus measured.
+    pub mean: f64,
+    /// The largest measured magnitude, to which relative numbers refer; for a position, from its
+    /// mean.
+    pub scale: f64,
+    /// Number of rows.
+    pub rows: usize,
+}
+
+/// A quantity, measured and simulated, both sampled and smoothed in the same way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelComparison {
+    /// The quantity.
+    pub channel: Channel,
+    /// Whether it was measured itself; otherwise it is the rate of one that was.
+    pub is_measured: bool,
+    /// Measured values.
+    pub measured: LocalFit,
+    /// Simulated values at the same times.
+    pub simulated: LocalFit,
+    /// What was added to measured positions, whose origin is arbitrary, m.
+    pub origin: f64,
+    /// How far they are apart.
+    pub differences: Differences,
+}
+
+/// Compares all quantities that a table holds, and their rates.
+pub(super) fn of(
+    motion: &MeasuredMotion,
+    trace: &MotionTrace,
+    rows: &Range<usize>,
+    window: usize,
+) -> Vec<ChannelComparison> {
+    let mut found = Vec::new();
+    let t = &motion.t;
+    for (channel, values) in &motion.channels {
+        // Rows after the horizon are shown, but don't count.
+        let simulated = sampled(trace, *channel, t, values, window);
+        let origin = if channel.has_own_origin() { offset_of(values, &simulated.value, rows.clone()) } else { 0.0 };
+        let moved: Vec<f64> = values.iter().map(|value| value + origin).collect();
+        let measured = if channel.rate().is_some() { local_fit(t, &moved, window) } else { unsmoothed(moved) };
+        let differences = differences(*channel, t, &measured.value, &simulated.value, rows.clone());
+        let rate = channel.rate().filter(|rate| motion.values(*rate).is_none());
+        let rates = rate.map(|rate| {
+            let (a, b) = (unsmoothed(measured.rate.clone()), unsmoothed(simulated.rate.clone()));
+            let differences = self::differences(rate, t, &a.value, &b.value, rows.clone());
+            ChannelComparison { channel: rate, is_measured: false, measured: a, simulated: b, origin: 0.0, differences }
+        });
+        found.push(ChannelComparison {
+            channel: *channel,
+            is_measured: true,
+            measured,
+            simulated,
+            origin,
+            differences,
+        });
+        found.extend(rates);
+    }
+    found.sort_by_key(|comparison| Channel::ALL.iter().position(|channel| *channel == comparison.channel));
+    found
+}
+
+/// The mean of simulated minus measured values.
+fn offset_of(measured: &[f64], simulated: &[f64], rows: Range<usize>) -> f64 {
+    let off: Vec<f64> = rows.map(|row| simulated[row] - measured[row]).filter(|off| off.is_finite()).collect();
+    off.iter().sum::<f64>() / (off.len() as f64).max(1.0)
+}
+
+fn differences(channel: Channel, t: &[f64], measured: &[f64], simulated: &[f64], rows: Range<usize>) -> Differences {
+    let valid: Vec<usize> = rows.filter(|&row| (simulated[row] - measured[row]).is_finite()).collect();
+    let n = (valid.len() as f64).max(1.0);
+    let middle = if channel.has_own_origin() { valid.iter().map(|&row| measured[row]).sum::<f64>() / n } else { 0.0 };
+    let mut found = Differences { rows: valid.len(), ..Differences::default() };
+    for row in valid {
+        let off = simulated[row] - measured[row];
+        found.rms += off * off / n;
+        found.mean += off / n;
+        found.scale = found.scale.max((measured[row] - middle).abs());
+        if off.abs() > found.max {
+            (found.max, found.max_at) = (off.abs(), t[row]);
+        }
+    }
+    found.rms = found.rms.sqrt();
+    found
+}

@@ -1,0 +1,28 @@
+//! What a comparison writes: tables, the same as JSON, figures, a page.
+
+mod figure;
+mod json;
+mod page;
+mod table;
+
+pub(crate) use figure::motion_figures;
+pub use figure::svg_figures;
+pub use json::json;
+pub(crate) use page::{fixed, horizon_note, html_head, html_list, html_table};
+pub use page::{page, sentences_of};
+pub use table::{half_cycle_csv, impact_csv, rows_csv};
+
+/// All files that a comparison may write; the figures depend on the table.
+pub const FILES: [&str; 11] = [
+    "compare.json",
+    "compare.csv",
+    "half-cycles.csv",
+    "impact-pairs.csv",
+    "compare.html",
+    "figures/phi.svg",
+    "figures/omega.svg",
+    "figures/x.svg",
+    "figures/y.svg",
+    "figures/vx.svg",
+    "figures/vy.svg",
+];

@@ -1,0 +1,399 @@
+//! The values of keys of a scene with which its motion fits a measured one best.
+
+mod confidence;
+mod keys;
+mod least_squares;
+mod matrix;
+mod objective;
+mod write;
+
+pub use confidence::{Estimate, TradeOff};
+pub use keys::FitKey;
+pub use write::{FILES, csv, figures, json, page, sentences};
+
+use crate::compare::{AlignmentSettings, CompareSettings, Comparison, mismatch_and_shift, set_zero};
+use crate::measured::{Measured, Sign};
+use crate::sweep::sample::{Method, Sampler};
+use crate::{Failure, Setting, StudyScene, divergence, runner};
+use least_squares::{Point, levenberg_marquardt, nelder_mead};
+use objective::{Objective, Trial};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use teeter_scenario::resolve::Resolved;
+use teeter_scenario::simulation::Simulation;
+
+/// How a fit is made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FitSettings {
+    /// What is known of time shift and side; the rest is fitted.
+    pub alignment: AlignmentSettings,
+    /// What the measured angle shows when the block stands upright, rad; none: it is fitted.
+    pub offset: Option<f64>,
+    /// Rows of the window of the final comparison.
+    pub window: usize,
+    /// Number of values tried all over the ranges before the best are improved; none: by the number
+    /// of keys.
+    pub samples: Option<usize>,
+    /// Seed of these values.
+    pub seed: u64,
+    /// Threads.
+    pub threads: usize,
+}
+
+/// Values that were tried.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Evaluation {
+    /// `samples`, `improvement` or `simplex`.
+    pub stage: &'static str,
+    /// The values in the keys' units.
+    pub values: Vec<f64>,
+    /// Mean square of the differences over the noise of the samples, or, of the samples over the
+    /// ranges, their [mismatch](crate::compare::Alignment::mismatch); infinite if the run failed.
+    pub cost: f64,
+}
+
+/// A fit.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Fit {
+    /// The keys.
+    pub keys: Vec<FitKey>,
+    /// Their fitted values, in their units.
+    pub values: Vec<f64>,
+    /// The setting with them.
+    pub setting: Setting,
+    /// Confidence of keys, time shift and zero of the angle.
+    pub estimates: Vec<Estimate>,
+    /// Pairs that trade off.
+    pub trade_offs: Vec<TradeOff>,
+    /// Correlations of all estimates.
+    pub correlation: Vec<Vec<f64>>,
+    /// Mean square of the differences over the noise of the samples.
+    pub cost: f64,
+    /// Correlation of one residual with the next.
+    pub residual_correlation: f64,
+    /// Number of residuals.
+    pub residuals: usize,
+    /// The different values at which starts ended, best first: with their cost.
+    pub restarts: Vec<(Vec<f64>, f64)>,
+    /// All that was tried.
+    pub evaluations: Vec<Evaluation>,
+    /// Up to when the fitted scene is predictable, s, and whether that cuts the data off.
+    pub horizon: f64,
+    /// The measured and the fitted motion.
+    pub comparison: Comparison,
+    /// The measured motion and that of the scene before the fit, if it runs.
+    pub before: Option<Comparison>,
+}
+
+/// Why there is no fit.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// No trial values gave a motion.
+    #[error("no values in the ranges give a motion that can be compared: {0}")]
+    NoMotion(String),
+    /// The motions can't be compared.
+    #[error(transparent)]
+    Compare(#[from] crate::compare::CompareError),
+    /// Ended by the user.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// Reports progress: phase, how many of how many are done.
+pub type ReportFit<'a> = dyn FnMut(&str, usize, usize) + Send + 'a;
+
+/// Starts that are improved.
+const STARTS: usize = 4;
+/// How much of the motion is fitted one after the other, with the distance of differences, as a share
+/// of the range.
+const EXTENSIONS: [(f64, f64); 4] = [(0.3, 4e-3), (0.55, 2e-3), (0.8, 1e-3), (1.0, 5e-4)];
+/// Size of the simplex in such distances.
+const SIMPLEX: f64 = 5.0;
+/// A horizon that moves by less than this share cuts nothing off.
+const SAME_HORIZON: f64 = 0.02;
+
+impl Fit {
+    /// Fits `keys` of a scene to the measured motion of its block with the number `block`.
+    ///
+    /// Values all over the ranges (a Latin hypercube) are tried first, as a rocking motion has many
+    /// local minima: a wrong number of impacts. The best of them, and the scene's own, are improved
+    /// by Levenberg and Marquardt's method, and the best result of that by a simplex, which needs no
+    /// derivatives. Rows beyond the horizon of the best values don't count.
+    ///
+    /// # Errors
+    /// If nothing can be compared, or the user interrupts.
+    pub fn of(
+        source: &StudyScene,
+        resolved: &Resolved,
+        block: usize,
+        measured: &Measured,
+        keys: &[FitKey],
+        settings: &FitSettings,
+        cancel: &Arc<AtomicBool>,
+        report: &mut ReportFit<'_>,
+    ) -> Result<Self, FitError> {
+        let mut evaluations = Vec::new();
+        let own = own_values(resolved, keys);
+        let (mut objective, starts) = search(
+            source,
+            resolved,
+            block,
+            measured,
+            keys,
+            settings,
+            cancel,
+            own.as_deref(),
+            &mut evaluations,
+            report,
+        )?;
+        // The rows that count end at the horizon of the best values so far, and then at that of the
+        // fitted ones.
+        let mut until = objective.until;
+        let mut best: Vec<Trial> = starts;
+        let mut horizon = until;
+        for round in 0..2 {
+            let setting = objective.setting(&best[0].at);
+            let scene = source.load(&setting).map_err(|found| FitError::NoMotion(Failure::from(found).to_string()))?;
+            horizon = match divergence(&scene.scene, cancel) {
+                Ok(found) => found.horizon(),
+                Err(Failure::Interrupted) => return Err(FitError::Interrupted),
+                Err(_) => until,
+            };
+            let cut = horizon.min(resolved.scene.time.end);
+            if round > 0 && cut >= until * (1.0 - SAME_HORIZON) {
+                break;
+            }
+            until = cut;
+            // From the beginning of the motion to all of it: after many impacts the difference is
+            // small only very near the right values, and the way there leads through the beginning.
+            for (share, reach) in EXTENSIONS {
+                objective.until = share * until;
+                let polish = share == 1.0;
+                best = improve(&objective, &best, reach, polish, settings.threads, &mut evaluations, report)?;
+                best = distinct(best, reach);
+            }
+        }
+        let fitted = &best[0];
+        let setting = objective.setting(&fitted.at);
+        let found = confidence::of(&objective, fitted).ok_or(FitError::Interrupted)?;
+        let compared = |trace, shift, offset| {
+            let alignment = AlignmentSettings { shift: Some(shift), sign: Some(objective.sign) };
+            // The zero of the angle was taken in the turned motion.
+            let offset = objective.sign.factor() * offset;
+            let settings = CompareSettings { alignment, window: settings.window, offset, horizon: Some(horizon) };
+            Comparison::of(measured, trace, settings)
+        };
+        let whole = Objective {
+            until: resolved.scene.time.end,
+            motion: objective.motion.clone(),
+            noise: Vec::new(),
+            ..objective
+        };
+        let trace = whole.trace(&setting).map_err(|failure| FitError::NoMotion(failure.to_string()))?;
+        let comparison = compared(trace, fitted.shift, fitted.offset)?;
+        let before = own.as_ref().and_then(|_| whole.trace(&Setting::none()).ok());
+        let before = before.and_then(|trace| compared(trace, fitted.shift, fitted.offset).ok());
+        let value = |trial: &Trial| keys.iter().zip(&trial.at).map(|(key, share)| key.at(*share)).collect::<Vec<f64>>();
+        Ok(Self {
+            keys: keys.to_vec(),
+            values: value(fitted),
+            setting,
+            estimates: found.estimates,
+            trade_offs: found.trade_offs,
+            correlation: found.correlation,
+            cost: fitted.cost,
+            residual_correlation: found.residual_correlation,
+            residuals: fitted.residuals.len(),
+            restarts: best.iter().map(|trial| (value(trial), trial.cost)).collect(),
+            evaluations,
+            horizon,
+            comparison,
+            before,
+        })
+    }
+}
+
+/// The scene's own values as shares of the ranges, if all are numbers in them.
+fn own_values(resolved: &Resolved, keys: &[FitKey]) -> Option<Vec<f64>> {
+    let one = |key: &FitKey| {
+        let si = resolved.document.quantity(key.key()).or_else(|| resolved.document.number(key.key()))?;
+        // The value of one unit in SI units.
+        let unit = if key.unit().is_empty() { 1.0 } else { si_of(key) };
+        key.share(si / unit)
+    };
+    keys.iter().map(one).collect()
+}
+
+/// One unit of a key in SI units; NaN if it isn't a quantity.
+fn si_of(key: &FitKey) -> f64 {
+    use teeter_scenario::keys::{Kind, PathTarget};
+    match teeter_scenario::keys::find(key.key()) {
+        Some(PathTarget::Key(_, found)) => match found.kind {
+            Kind::Quantity(dimension, _) => {
+                teeter_scenario::quantity::parse(&key.text(1.0), dimension).unwrap_or(f64::NAN)
+            }
+            _ => f64::NAN,
+        },
+        _ => f64::NAN,
+    }
+}
+
+/// Tries values all over the ranges, seen from both sides if that isn't given; returns the best,
+/// best first.
+fn search<'a>(
+    source: &'a StudyScene,
+    resolved: &Resolved,
+    block: usize,
+    measured: &Measured,
+    keys: &'a [FitKey],
+    settings: &FitSettings,
+    cancel: &'a Arc<AtomicBool>,
+    own: Option<&[f64]>,
+    evaluations: &mut Vec<Evaluation>,
+    report: &mut ReportFit<'_>,
+) -> Result<(Objective<'a>, Vec<Trial>), FitError> {
+    let start = initial_angle(resolved, block);
+    let objective = |sign: Sign| {
+        let mut motion = measured.motion(sign);
+        set_zero(&mut motion, 0.0, start);
+        let noise = Objective::noise_of(&motion);
+        let offset = settings.offset.map(|offset| sign.factor() * offset);
+        let until = resolved.scene.time.end;
+        Objective { source, keys, sign, block, motion, noise, shift: settings.alignment.shift, offset, until, cancel }
+    };
+    let signs = settings.alignment.sign.map_or(vec![Sign::AsIs, Sign::Reversed], |sign| vec![sign]);
+    let objectives: Vec<Objective<'_>> = signs.into_iter().map(objective).collect();
+    let count = settings.samples.unwrap_or(16 * (keys.len() + 1)).clamp(1, 10_000);
+    let sampler =
+        Sampler::new(settings.seed, Method::LatinHypercube, keys.len(), u32::try_from(count).unwrap_or(u32::MAX));
+    let mut places: Vec<Vec<f64>> = own.into_iter().map(<[f64]>::to_vec).collect();
+    places.extend((0..count as u64).map(|sample| (0..keys.len()).map(|key| sampler.share(key, sample)).collect()));
+    let total = places.len();
+    let mut done = 0;
+    let work = |at: &Vec<f64>| {
+        // One run serves both sides.
+        let trace = objectives[0].trace(&objectives[0].setting(at))?;
+        let each = objectives.iter().map(|objective| match settings.alignment.shift {
+            Some(_) => mismatch_of_given(objective, &trace),
+            None => mismatch_and_shift(&objective.motion, &trace, objective.until),
+        });
+        Ok::<Vec<(f64, f64)>, Failure>(each.collect())
+    };
+    let results = runner::in_order(&places, settings.threads, cancel, work, |_| {
+        done += 1;
+        report("values all over the ranges", done, total);
+    });
+    let mut ranked: Vec<(usize, f64, usize)> = Vec::new();
+    let mut why = "no run came to its end".to_owned();
+    for (number, result) in results.into_iter().enumerate() {
+        let cost = match result {
+            None | Some(Err(Failure::Interrupted)) => return Err(FitError::Interrupted),
+            Some(Err(failure)) => {
+                why = failure.to_string();
+                f64::INFINITY
+            }
+            Some(Ok(sides)) => {
+                for (side, (_, mismatch)) in sides.iter().enumerate() {
+                    ranked.push((side, *mismatch, number));
+                }
+                sides.iter().map(|side| side.1).fold(f64::INFINITY, f64::min)
+            }
+        };
+        let values = keys.iter().zip(&places[number]).map(|(key, share)| key.at(*share)).collect();
+        evaluations.push(Evaluation { stage: "samples", values, cost });
+    }
+    ranked.retain(|(_, mismatch, _)| mismatch.is_finite());
+    ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let Some(&(side, ..)) = ranked.first() else { return Err(FitError::NoMotion(why)) };
+    let chosen = objectives.into_iter().nth(side).ok_or(FitError::Interrupted)?;
+    let near = ranked.iter().filter(|(other, ..)| *other == side).take(STARTS);
+    let starts: Vec<Trial> = near.filter_map(|(_, _, number)| chosen.trial_anywhere(&places[*number]).ok()).collect();
+    if starts.is_empty() { Err(FitError::NoMotion(why)) } else { Ok((chosen, starts)) }
+}
+
+/// The angle at which the block starts, rad, from which angles of markers without places are
+/// measured.
+fn initial_angle(resolved: &Resolved, block: usize) -> f64 {
+    Simulation::new(&resolved.scene).ok().map_or(0.0, |simulation| {
+        simulation.layout.blocks.get(block).map_or(0.0, |place| simulation.state.q[place.range.start + 2])
+    })
+}
+
+/// The trials, best first, without those that ended where a better one did.
+fn distinct(trials: Vec<Trial>, reach: f64) -> Vec<Trial> {
+    let mut kept: Vec<Trial> = Vec::new();
+    for trial in trials {
+        let same = |other: &Trial| other.at.iter().zip(&trial.at).all(|(a, b)| (a - b).abs() <= reach);
+        if !kept.iter().any(same) {
+            kept.push(trial);
+        }
+    }
+    kept.truncate(STARTS);
+    kept
+}
+
+/// The mean square difference with a given shift, relative to the noise.
+fn mismatch_of_given(objective: &Objective<'_>, trace: &crate::compare::MotionTrace) -> (f64, f64) {
+    let shift = objective.shift.unwrap_or(0.0);
+    (shift, objective.cost_of(trace, shift))
+}
+
+type Start = Point<(f64, Option<Trial>)>;
+
+/// Improves the starts; returns the results, best first.
+fn improve(
+    objective: &Objective<'_>,
+    starts: &[Trial],
+    reach: f64,
+    polish: bool,
+    threads: usize,
+    evaluations: &mut Vec<Evaluation>,
+    report: &mut ReportFit<'_>,
+) -> Result<Vec<Trial>, FitError> {
+    let point = |trial: Trial| {
+        let residuals = trial.residuals.clone();
+        Point { at: trial.at.clone(), residuals, cost: trial.cost, kept: (trial.shift, Some(trial)) }
+    };
+    let tried = std::sync::Mutex::new(Vec::new());
+    let evaluate = |stage: &'static str| {
+        let tried = &tried;
+        move |at: &[f64], kept: &(f64, Option<Trial>)| -> Option<Start> {
+            let trial = objective.trial(at, kept.0).ok();
+            let values = objective.keys.iter().zip(at).map(|(key, share)| key.at(*share)).collect();
+            let cost = trial.as_ref().map_or(f64::INFINITY, |trial| trial.cost);
+            tried.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push(Evaluation { stage, values, cost });
+            trial.filter(|trial| trial.cost.is_finite()).map(point)
+        }
+    };
+    let mut done = 0;
+    let work = |start: &Trial| {
+        // At the rows up to the horizon the cost is another one.
+        let start = objective.trial(&start.at, start.shift).ok()?;
+        let found = levenberg_marquardt(point(start), reach, &mut evaluate("improvement"));
+        found.kept.1
+    };
+    let total = starts.len() + 1;
+    let results = runner::in_order(starts, threads, objective.cancel, work, |_| {
+        done += 1;
+        report("improved starts", done, total);
+    });
+    let mut best: Vec<Trial> = results.into_iter().flatten().flatten().filter(|trial| trial.cost.is_finite()).collect();
+    best.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let Some(first) = best.first().cloned().filter(|_| polish) else {
+        evaluations.extend(tried.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner));
+        let cancelled = best.is_empty() || objective.cancel.load(std::sync::atomic::Ordering::Relaxed);
+        return if cancelled { Err(FitError::Interrupted) } else { Ok(best) };
+    };
+    // A rough function may stop a method that needs derivatives.
+    let dimensions = objective.keys.len();
+    let simplex = nelder_mead(point(first), SIMPLEX * reach, 30 * dimensions, &mut evaluate("simplex"));
+    let last = levenberg_marquardt(simplex, 0.5 * reach, &mut evaluate("improvement"));
+    report("improved starts", total, total);
+    best.extend(last.kept.1);
+    best.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    evaluations.extend(tried.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner));
+    if objective.cancel.load(std::sync::atomic::Ordering::Relaxed) { Err(FitError::Interrupted) } else { Ok(best) }
+}

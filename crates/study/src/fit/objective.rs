@@ -1,0 +1,186 @@
+//! The difference between a measured motion and that of a scene with trial values.
+
+use super::FitKey;
+use crate::compare::{MotionTrace, Tracer, golden, mismatch_and_shift};
+use crate::measured::{Channel, MeasuredMotion, Sign, local_fit};
+use crate::{Failure, Setting, StudyScene};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use teeter_scenario::simulation::Simulation;
+
+/// Rows of the window by which the noise of the samples is estimated.
+const NOISE_WINDOW: usize = 7;
+/// Noise below this share of the largest value can't be told from rounding in the table.
+const LEAST_NOISE: f64 = 1e-6;
+
+/// What is fitted, and to what.
+pub(super) struct Objective<'a> {
+    pub(super) source: &'a StudyScene,
+    pub(super) keys: &'a [FitKey],
+    /// The side from which the motion was seen.
+    pub(super) sign: Sign,
+    /// The block that was measured, by its number.
+    pub(super) block: usize,
+    pub(super) motion: MeasuredMotion,
+    /// The noise of each quantity of the motion.
+    pub(super) noise: Vec<f64>,
+    /// A given time shift, s.
+    pub(super) shift: Option<f64>,
+    /// A given zero of the angle, rad.
+    pub(super) offset: Option<f64>,
+    /// Up to when the run is compared, s.
+    pub(super) until: f64,
+    pub(super) cancel: &'a Arc<AtomicBool>,
+}
+
+/// The run with trial values, and its alignment.
+#[derive(Clone, Debug)]
+pub(super) struct Trial {
+    /// Values of the keys as shares of their ranges.
+    pub(super) at: Vec<f64>,
+    pub(super) trace: MotionTrace,
+    /// Time of the run at t = 0 of the table, s.
+    pub(super) shift: f64,
+    /// What the measured angle shows when the block stands upright, rad.
+    pub(super) offset: f64,
+    /// Differences over their noise.
+    pub(super) residuals: Vec<f64>,
+    /// Their mean square.
+    pub(super) cost: f64,
+}
+
+impl<'a> Objective<'a> {
+    /// The noise of the quantities of a motion.
+    pub(super) fn noise_of(motion: &MeasuredMotion) -> Vec<f64> {
+        let one = |(_, values): &(Channel, Vec<f64>)| {
+            let largest =
+                values.iter().filter(|value| value.is_finite()).fold(0.0, |most: f64, value| most.max(value.abs()));
+            local_fit(&motion.t, values, NOISE_WINDOW).noise.max(LEAST_NOISE * largest).max(f64::MIN_POSITIVE)
+        };
+        motion.channels.iter().map(one).collect()
+    }
+
+    /// The scene's setting at shares of the ranges.
+    pub(super) fn setting(&self, at: &[f64]) -> Setting {
+        let pairs = self.keys.iter().zip(at);
+        pairs.fold(Setting::none(), |setting, (key, share)| setting.set(key.key(), key.text(key.at(*share))))
+    }
+
+    /// The motion of the block with trial values.
+    pub(super) fn trace(&self, setting: &Setting) -> Result<MotionTrace, Failure> {
+        if self.cancel.load(Ordering::Relaxed) {
+            return Err(Failure::Interrupted);
+        }
+        let resolved = self.source.load(setting)?;
+        let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
+        let mut simulation = Simulation::new(&resolved.scene).map_err(|error| refused(&error))?;
+        simulation.cancelled_by(Arc::clone(self.cancel));
+        let place = simulation.layout.blocks.get(self.block).ok_or_else(|| refused(&"the block isn't in the scene"))?;
+        // A quarter of the time between rows: what lies between is a cubic.
+        let mut tracer = Tracer::new(place.range.clone(), 0.25 * self.motion.interval());
+        let until = self.until.min(resolved.scene.time.end);
+        let ended =
+            simulation.run_until(until, &mut [&mut tracer]).map_err(|error| Failure::Ended(error.to_string()))?;
+        Failure::unless_complete(ended, simulation.state.t)?;
+        Ok(tracer.trace)
+    }
+
+    /// Runs trial values and aligns them in time, wherever that may be.
+    pub(super) fn trial_anywhere(&self, at: &[f64]) -> Result<Trial, Failure> {
+        let trace = self.trace(&self.setting(at))?;
+        let shift = match self.shift {
+            Some(shift) => shift,
+            None => mismatch_and_shift(&self.motion, &trace, self.until).0,
+        };
+        Ok(self.aligned(at, trace, shift))
+    }
+
+    /// Runs trial values, with a time shift near `near` (s).
+    pub(super) fn trial(&self, at: &[f64], near: f64) -> Result<Trial, Failure> {
+        let trace = self.trace(&self.setting(at))?;
+        Ok(self.aligned(at, trace, near))
+    }
+
+    fn aligned(&self, at: &[f64], trace: MotionTrace, near: f64) -> Trial {
+        let shift = match self.shift {
+            Some(shift) => shift,
+            None => {
+                let reach = 1.5 * self.motion.interval();
+                golden(near - reach, near + reach, |shift| self.residuals(&trace, shift, near).2)
+            }
+        };
+        let (residuals, offset, cost) = self.residuals(&trace, shift, near);
+        Trial { at: at.to_vec(), trace, shift, offset, residuals, cost }
+    }
+
+    /// Mean square of the differences over their noise with a time shift.
+    pub(super) fn cost_of(&self, trace: &MotionTrace, shift: f64) -> f64 {
+        self.residuals(trace, shift, shift).2
+    }
+
+    /// The rows that are compared with a time shift.
+    fn rows(&self, trace: &MotionTrace, shift: f64) -> std::ops::Range<usize> {
+        let begin = if trace.is_held() { f64::NEG_INFINITY } else { 0.0 };
+        let first = self.motion.t.partition_point(|t| t + shift < begin);
+        let last = self.motion.t.partition_point(|t| t + shift <= self.until);
+        first..last.max(first)
+    }
+
+    /// Differences over noise, the zero of the angle, and the mean square. The rows are those of the
+    /// shift `near`, so that they are the same for all shifts about it.
+    fn residuals(&self, trace: &MotionTrace, shift: f64, near: f64) -> (Vec<f64>, f64, f64) {
+        let rows = self.rows(trace, near);
+        let mut all = Vec::new();
+        let mut zero = 0.0;
+        for ((channel, values), noise) in self.motion.channels.iter().zip(&self.noise) {
+            let at = |t: f64| {
+                trace.at(t.min(trace.end())).or_else(|| trace.at(0.0)).map_or(f64::NAN, |motion| motion.of(*channel))
+            };
+            let off = rows
+                .clone()
+                .filter(|&row| values[row].is_finite())
+                .map(|row| values[row] - at(self.motion.t[row] + shift));
+            let off: Vec<f64> = off.collect();
+            let mean = off.iter().sum::<f64>() / (off.len() as f64).max(1.0);
+            // Unknowns that enter linearly are eliminated.
+            let constant = match (channel, self.offset) {
+                (Channel::Phi, Some(given)) => given,
+                (Channel::Phi, None) | (Channel::X | Channel::Y, _) => mean,
+                _ => 0.0,
+            };
+            if *channel == Channel::Phi {
+                zero = constant;
+            }
+            all.extend(off.iter().map(|off| (off - constant) / noise));
+        }
+        let n = (all.len() as f64).max(1.0);
+        let cost = all.iter().map(|r| r * r).sum::<f64>() / n;
+        let cost = if all.len() < 8 || !cost.is_finite() { f64::INFINITY } else { cost };
+        (all, zero, cost)
+    }
+
+    /// Differences over noise with everything fixed: for derivatives.
+    pub(super) fn fixed(&self, trace: &MotionTrace, shift: f64, near: f64) -> Vec<f64> {
+        let rows = self.rows(trace, near);
+        let mut all = Vec::new();
+        for ((channel, values), noise) in self.motion.channels.iter().zip(&self.noise) {
+            for row in rows.clone().filter(|&row| values[row].is_finite()) {
+                let t = (self.motion.t[row] + shift).min(trace.end());
+                let value = trace.at(t).or_else(|| trace.at(0.0)).map_or(f64::NAN, |motion| motion.of(*channel));
+                all.push((values[row] - value) / noise);
+            }
+        }
+        all
+    }
+
+    /// Which of the residuals belong to which quantity.
+    pub(super) fn channel_of_residuals(&self, trace: &MotionTrace, near: f64) -> Vec<(Channel, f64)> {
+        let rows = self.rows(trace, near);
+        let mut all = Vec::new();
+        for ((channel, values), noise) in self.motion.channels.iter().zip(&self.noise) {
+            let count = rows.clone().filter(|&row| values[row].is_finite()).count();
+            all.extend(std::iter::repeat_n((*channel, *noise), count));
+        }
+        all
+    }
+}

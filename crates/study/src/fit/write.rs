@@ -1,0 +1,210 @@
+//! What a fit writes.
+
+use super::{Estimate, Fit};
+use crate::compare::{fixed, horizon_note, html_head, html_list, html_table, motion_figures, sentences_of};
+use crate::write::{percent, short};
+use serde_json::{Value, json};
+use std::fmt::Write;
+use teeter_plot::{AxisError, Theme, escaped};
+
+/// All files that a fit may write; the figures depend on the table.
+pub const FILES: [&str; 10] = [
+    "fit.json",
+    "fit.csv",
+    "fit.html",
+    "figures/phi.svg",
+    "figures/omega.svg",
+    "figures/x.svg",
+    "figures/y.svg",
+    "figures/vx.svg",
+    "figures/vy.svg",
+    "scene.toml",
+];
+
+/// A key whose standard error is more than this share of its range is hardly determined.
+const HARDLY: f64 = 0.15;
+/// `fit.csv`: all values tried: `stage`, a column for each key (in its unit), `cost` (empty if the run failed).
+#[must_use]
+pub fn csv(fit: &Fit) -> String {
+    let mut text = "stage".to_owned();
+    for key in &fit.keys {
+        let unit = if key.unit().is_empty() { String::new() } else { format!(" [{}]", key.unit()) };
+        let _ = write!(text, ",{}", crate::write::quoted(&format!("{}{unit}", key.key())));
+    }
+    text.push_str(",cost\n");
+    for tried in &fit.evaluations {
+        text.push_str(tried.stage);
+        for value in &tried.values {
+            let _ = write!(text, ",{value:?}");
+        }
+        text.push(',');
+        if tried.cost.is_finite() {
+            let _ = write!(text, "{:?}", tried.cost);
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// `fit.json`.
+#[must_use]
+pub fn json(fit: &Fit, scene: &str, measured: &str, block: &str) -> String {
+    let estimates: Vec<Value> = fit
+        .estimates
+        .iter()
+        .map(|found| {
+            let (low, high) = found.interval();
+            json!({
+                "name": found.name, "unit": found.unit, "value": found.value, "standard_error": found.standard_error,
+                "interval_95": [low, high], "at_bound": found.at_bound, "standard_error_share_of_range": found.share_of_range,
+            })
+        })
+        .collect();
+    let trade_offs: Vec<Value> = fit
+        .trade_offs
+        .iter()
+        .map(|found| {
+            let [a, b] = found.pair.map(|k| fit.estimates[k].name.as_str());
+            json!({ "between": [a, b], "correlation": found.correlation })
+        })
+        .collect();
+    let restarts: Vec<Value> =
+        fit.restarts.iter().map(|(values, cost)| json!({ "values": values, "cost": cost })).collect();
+    let value = json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "scene": scene,
+        "measured": measured,
+        "block": block,
+        "values": fit.keys.iter().zip(&fit.values).map(|(key, value)| (key.key().to_owned(), Value::from(key.text(*value)))).collect::<serde_json::Map<_, _>>(),
+        "sign": fit.comparison.alignment.sign.factor(),
+        "estimates": estimates,
+        "correlation": fit.correlation,
+        "trade_offs": trade_offs,
+        "mean_square_over_noise": fit.cost,
+        "residuals": fit.residuals,
+        "residual_correlation": fit.residual_correlation,
+        "horizon": fit.horizon,
+        "restarts": restarts,
+        "evaluations": fit.evaluations.len(),
+    });
+    // A value of strings, finite numbers and nulls always serialises.
+    serde_json::to_string_pretty(&value).unwrap_or_default() + "\n"
+}
+
+/// A value with its error to two digits of the error.
+fn with_error(found: &Estimate) -> String {
+    let error = found.standard_error;
+    let unit = if found.unit.is_empty() { String::new() } else { format!(" {}", found.unit) };
+    if !(error > 0.0 && error.is_finite()) {
+        return format!("{}{unit}", short(found.value));
+    }
+    let decimals = (1 - error.log10().floor() as i32).clamp(0, 12) as usize;
+    format!("{:.decimals$} ± {:.decimals$}{unit}", found.value, 1.96 * error)
+}
+
+/// The results in sentences; the first ones are those of the keys.
+#[must_use]
+pub fn sentences(fit: &Fit) -> Vec<String> {
+    let mut texts: Vec<String> = fit
+        .estimates
+        .iter()
+        .filter(|found| found.value.is_finite())
+        .map(|found| format!("{} = {}", found.name, with_error(found)))
+        .collect();
+    for found in &fit.estimates {
+        if found.at_bound {
+            texts.push(format!("warning: {} is at the bound of its range: widen it", found.name));
+        }
+        if found.share_of_range.is_some_and(|share| !(share <= HARDLY)) {
+            texts.push(format!(
+                "warning: the motion hardly determines {}: its standard error is {} of its range",
+                found.name,
+                percent(found.share_of_range.unwrap_or(1.0))
+            ));
+        }
+    }
+    for found in &fit.trade_offs {
+        let [a, b] = found.pair.map(|k| fit.estimates[k].name.as_str());
+        let way = if found.correlation > 0.0 { "larger" } else { "smaller" };
+        texts.push(format!(
+            "warning: {a} and {b} trade off (correlation {:.3}): a larger {a} is made up for by a {way} {b}; the errors of both allow for that",
+            found.correlation
+        ));
+    }
+    let left = fit.cost.sqrt();
+    texts.push(if left > 1.5 {
+        format!("warning: what is left is {} times the noise of the samples: the model doesn’t describe all of the motion, and the errors are only as good as the model", short(left))
+    } else {
+        format!("what is left is {} times the noise of the samples", short(left))
+    });
+    texts.push(match fit.restarts.get(1) {
+        None => format!("all starts led to the same values; {} runs were made", fit.evaluations.len()),
+        Some((_, cost)) => format!(
+            "starts led to {} different values; the second best leave {} times the noise; {} runs were made",
+            fit.restarts.len(),
+            short(cost.sqrt()),
+            fit.evaluations.len()
+        ),
+    });
+    if fit.residual_correlation > 0.1 {
+        texts.push(format!(
+            "what is left at one row resembles that at the next (correlation {:.2}): the errors allow for that",
+            fit.residual_correlation
+        ));
+    }
+    texts
+}
+
+/// The page.
+///
+/// # Errors
+/// [`AxisError`] if a value can't be shown.
+pub fn page(fit: &Fit, title: &str, names: [&str; 3]) -> Result<String, AxisError> {
+    let [scene, measured, block] = names;
+    let subtitle = format!("{scene} · {measured} · block {block} · teeter {}", env!("CARGO_PKG_VERSION"));
+    let mut html = html_head(&format!("Fitted to a measured motion: {title}"), &subtitle);
+    let rows = fit.estimates.iter().filter(|found| found.value.is_finite()).map(|found| {
+        let (low, high) = found.interval();
+        let number = |value: f64| escaped(&format!("{value:.5}")).replace('-', "\u{2212}");
+        vec![
+            format!("<code>{}</code>", escaped(&found.name)),
+            format!("{} {}", number(found.value), escaped(&found.unit)),
+            short(found.standard_error),
+            format!("{} … {}", number(low), number(high)),
+        ]
+    });
+    let _ = write!(
+        html,
+        "<section class=\"panel\"><h3>Fitted values</h3>\n{}{}</section>\n",
+        html_table(&["Key", "Value", "Standard error", "95 % interval"], rows),
+        html_list(&sentences(fit)[fit.estimates.iter().filter(|found| found.value.is_finite()).count()..])
+    );
+    html.push_str("<section class=\"panel\"><h3>Motion</h3>\n<div class=\"pictures\">\n");
+    for (_, svg) in motion_figures(&fit.comparison, fit.before.as_ref(), Theme::Page)? {
+        html.push_str(&svg);
+    }
+    html.push_str("</div>");
+    html.push_str(horizon_note(&fit.comparison));
+    html.push_str("</section>\n<section class=\"panel\"><h3>Correlation of the estimates</h3>\n");
+    let heads: Vec<String> = fit.estimates.iter().map(|found| escaped(&found.name)).collect();
+    let heading: Vec<&str> = std::iter::once("").chain(heads.iter().map(String::as_str)).collect();
+    let rows = fit.correlation.iter().zip(&heads).map(|(row, name)| {
+        std::iter::once(name.clone()).chain(row.iter().map(|value| fixed(*value, 3))).collect::<Vec<_>>()
+    });
+    let _ = write!(
+        html,
+        "{}<p class=\"note\">Near 1 or −1: the motion determines a combination of the two, not each by itself.</p></section>\n\
+         <section class=\"panel\"><h3>How they are compared</h3>\n{}</section>\n</main>\n</body>\n</html>\n",
+        html_table(&heading, rows),
+        html_list(&sentences_of(&fit.comparison))
+    );
+    Ok(html)
+}
+
+/// The figures for files, with their names.
+///
+/// # Errors
+/// [`AxisError`] if a value can't be shown.
+pub fn figures(fit: &Fit) -> Result<Vec<(String, String)>, AxisError> {
+    motion_figures(&fit.comparison, fit.before.as_ref(), Theme::Paper)
+}

@@ -1,0 +1,285 @@
+//! Where the quantities stand in a table: which columns, in which units, with which separator.
+
+use crate::sweep::spec::{Node, Reader, entries};
+use std::collections::BTreeMap;
+use teeter_scenario::diagnostic::{Diagnostic, Diagnostics};
+use teeter_scenario::dimension::Dimension;
+use teeter_scenario::quantity;
+use toml::de::DeTable;
+
+/// The column of a quantity.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ColumnSpec {
+    /// Its heading without the unit, or its number from 1; none: the name of the quantity.
+    pub column: Option<String>,
+    /// Its unit; none: the one in its heading, or else the SI unit.
+    pub unit: Option<String>,
+}
+
+/// A marker that is fixed to the block.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MarkerSpec {
+    /// Its name.
+    pub name: String,
+    /// Columns of its coordinates.
+    pub x: ColumnSpec,
+    /// As `x`.
+    pub y: ColumnSpec,
+    /// Its place on the upright block, from the mass centre, m.
+    pub at: Option<[f64; 2]>,
+}
+
+/// How a table of measured motion is laid out. The default finds `t` and the quantities by their
+/// headings.
+///
+/// ```
+/// use teeter_study::measured::ColumnLayout;
+/// let layout = ColumnLayout::read("[columns]\nt = \"Time\"\nphi = { column = \"Angle\", unit = \"deg\" }\n", "columns.toml");
+/// assert_eq!(layout.unwrap().columns["phi"].unit.as_deref(), Some("deg"));
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ColumnLayout {
+    /// The separator of columns; none: found from the first row.
+    pub separator: Option<char>,
+    /// Lines before the heading that are not read.
+    pub skip: usize,
+    /// Rows per second, Hz, for tables that have no times or count frames.
+    pub rate: Option<f64>,
+    /// Whether y is positive downwards, as in coordinates of pixels.
+    pub y_down: bool,
+    /// The columns of `t` and of the quantities, by name.
+    pub columns: BTreeMap<String, ColumnSpec>,
+    /// The markers; with any, angle and position come from them.
+    pub markers: Vec<MarkerSpec>,
+}
+
+/// The names of the quantities that a table may hold.
+pub(super) const NAMES: [&str; 7] = ["t", "phi", "omega", "x", "y", "vx", "vy"];
+const KEYS: [&str; 6] = ["separator", "skip", "rate", "y_down", "columns", "marker"];
+const COLUMN_EXAMPLE: &str =
+    "give its heading, such as \"Angle\", or its number, or { column = \"Angle\", unit = \"deg\" }";
+const MARKER_KEYS: [&str; 4] = ["x", "y", "unit", "at"];
+const MARKER_EXAMPLE: &str = "such as { x = \"top x\", y = \"top y\", unit = \"mm\", at = [\"0 cm\", \"6 cm\"] }, with `at` from the mass centre of the upright block";
+
+impl ColumnLayout {
+    /// Reads a layout from TOML; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// Everything that is wrong in it.
+    pub fn read(text: &str, file: &str) -> Result<Self, Diagnostics> {
+        let mut reader = Reader::new(file, text);
+        let root = match DeTable::parse(text) {
+            Ok(root) => root,
+            Err(error) => {
+                let mut finding = Diagnostic::error(file, format!("not valid TOML: {}", error.message()));
+                if let Some(span) = error.span() {
+                    reader.place(&mut finding, span);
+                }
+                return Err(finding.into());
+            }
+        };
+        let mut layout = Self::default();
+        for (name, node) in entries(root.get_ref()) {
+            match (name, node.table()) {
+                ("separator", _) => match node.text().and_then(separator) {
+                    Some(found) => layout.separator = Some(found),
+                    None => reader.wrong(
+                        name,
+                        Some(&node),
+                        "not a separator",
+                        "one of \",\", \";\", \"tab\" and \"blanks\"",
+                    ),
+                },
+                ("skip", _) => match node.whole().and_then(|lines| usize::try_from(lines).ok()) {
+                    Some(lines) => layout.skip = lines,
+                    None => reader.wrong(name, Some(&node), "a number of lines is expected", "such as 3"),
+                },
+                ("rate", _) => match node.text().map(rate) {
+                    Some(Ok(rate)) => layout.rate = Some(rate),
+                    Some(Err(why)) => reader.wrong(name, Some(&node), &why, "such as \"165 Hz\""),
+                    None => {
+                        reader.wrong(name, Some(&node), "a rate with its unit is expected", "such as \"165 Hz\"");
+                    }
+                },
+                ("y_down", _) => match reader.written(&node) {
+                    "true" => layout.y_down = true,
+                    "false" => layout.y_down = false,
+                    _ => reader.wrong(name, Some(&node), "true or false is expected", "true for pixel coordinates"),
+                },
+                ("columns", Some(table)) => {
+                    for (name, node) in entries(table) {
+                        let path = format!("columns.{name}");
+                        if !NAMES.contains(&name) {
+                            reader.unknown(&path, &node, name, &NAMES);
+                        } else if let Some(column) = column(&mut reader, &path, &node) {
+                            layout.columns.insert(name.to_owned(), column);
+                        }
+                    }
+                }
+                ("marker", Some(table)) => {
+                    for (name, node) in entries(table) {
+                        layout.markers.extend(marker(&mut reader, name, &node));
+                    }
+                }
+                ("columns" | "marker", None) => {
+                    reader.wrong(
+                        name,
+                        Some(&node),
+                        "a table is expected",
+                        &format!("write [{name}], and its keys below"),
+                    );
+                }
+                (other, _) => reader.unknown(other, &node, other, &KEYS),
+            }
+        }
+        if layout.markers.len() == 1 {
+            reader.wrong("marker", None, "one marker shows no angle", "give two or more");
+        }
+        let placed = layout.markers.iter().filter(|marker| marker.at.is_some()).count();
+        if placed > 0 && placed < layout.markers.len() {
+            reader.wrong(
+                "marker",
+                None,
+                "only some markers have a place on the block",
+                "give `at` for all, or for none",
+            );
+        }
+        if reader.found.has_errors() { Err(reader.into_findings()) } else { Ok(layout) }
+    }
+
+    /// Sets the column of a quantity.
+    ///
+    /// # Errors
+    /// If there is no such quantity.
+    pub fn set_column(&mut self, name: &str, column: &str) -> Result<(), String> {
+        self.known(name)?.column = Some(column.trim().to_owned());
+        Ok(())
+    }
+
+    /// Sets the unit of a quantity.
+    ///
+    /// # Errors
+    /// If there is no such quantity.
+    pub fn set_unit(&mut self, name: &str, unit: &str) -> Result<(), String> {
+        self.known(name)?.unit = Some(unit.trim().to_owned());
+        Ok(())
+    }
+
+    fn known(&mut self, name: &str) -> Result<&mut ColumnSpec, String> {
+        if NAMES.contains(&name) {
+            return Ok(self.columns.entry(name.to_owned()).or_default());
+        }
+        Err(format!("there is no quantity `{name}`: a table may hold {}", NAMES.join(", ")))
+    }
+}
+
+/// A separator by its sign or word.
+fn separator(text: &str) -> Option<char> {
+    match text {
+        "," => Some(','),
+        ";" => Some(';'),
+        "\t" | "tab" => Some('\t'),
+        " " | "blanks" => Some(' '),
+        _ => None,
+    }
+}
+
+/// A rate in Hz, from its text.
+///
+/// # Errors
+/// What is wrong with it.
+pub(super) fn rate(text: &str) -> Result<f64, String> {
+    match quantity::parse(text, Dimension::RATE) {
+        Ok(rate) if rate > 0.0 => Ok(rate),
+        Ok(_) => Err("must be positive".to_owned()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+/// A heading, or the number of a column.
+fn heading(reader: &Reader<'_>, node: &Node<'_, '_>) -> Option<String> {
+    node.text().map(str::to_owned).or_else(|| node.whole().map(|_| reader.written(node).to_owned()))
+}
+
+fn column(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>) -> Option<ColumnSpec> {
+    if let Some(column) = heading(reader, node) {
+        return Some(ColumnSpec { column: Some(column), unit: None });
+    }
+    let mut spec = ColumnSpec::default();
+    let Some(table) = node.table() else {
+        reader.wrong(path, Some(node), "not a column", COLUMN_EXAMPLE);
+        return None;
+    };
+    for (name, inner) in entries(table) {
+        let inner_path = format!("{path}.{name}");
+        match (name, heading(reader, &inner)) {
+            ("column", Some(text)) => spec.column = Some(text),
+            ("unit", Some(text)) => spec.unit = Some(text),
+            ("column" | "unit", None) => reader.wrong(&inner_path, Some(&inner), "a text is expected", COLUMN_EXAMPLE),
+            (other, _) => reader.unknown(&inner_path, &inner, other, &["column", "unit"]),
+        }
+    }
+    Some(spec)
+}
+
+fn marker(reader: &mut Reader<'_>, name: &str, node: &Node<'_, '_>) -> Option<MarkerSpec> {
+    let path = format!("marker.{name}");
+    let Some(table) = node.table() else {
+        reader.wrong(&path, Some(node), "not a marker", MARKER_EXAMPLE);
+        return None;
+    };
+    let (mut x, mut y, mut unit, mut at) = (None, None, None, None);
+    for (key, inner) in entries(table) {
+        let inner_path = format!("{path}.{key}");
+        match key {
+            "x" => x = heading(reader, &inner),
+            "y" => y = heading(reader, &inner),
+            "unit" => unit = inner.text().map(str::to_owned),
+            "at" => {
+                let read = |node: &Node<'_, '_>| quantity::parse(node.text()?, Dimension::LENGTH).ok();
+                let place = inner.array().and_then(|pair| match pair.as_slice() {
+                    [x, y] => Some([read(x)?, read(y)?]),
+                    _ => None,
+                });
+                if place.is_none() {
+                    let remedy = "give x and y from the mass centre, such as [\"1 cm\", \"-3 cm\"]";
+                    reader.wrong(&inner_path, Some(&inner), "two lengths are expected", remedy);
+                }
+                at = place;
+            }
+            other => reader.unknown(&inner_path, &inner, other, &MARKER_KEYS),
+        }
+    }
+    match (x, y) {
+        (Some(x), Some(y)) => {
+            let spec = |column: String| ColumnSpec { column: Some(column), unit: unit.clone() };
+            Some(MarkerSpec { name: name.to_owned(), x: spec(x), y: spec(y), at })
+        }
+        _ => {
+            reader.wrong(&path, Some(node), "a marker needs the columns of x and y", MARKER_EXAMPLE);
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn markers_are_read_with_their_places() {
+        let text = "rate = \"165 Hz\"\nseparator = \"tab\"\ny_down = true\n[marker.a]\nx = \"ax\"\ny = 3\nunit = \"mm\"\nat = [\"1 cm\", \"-2 cm\"]\n\
+            [marker.b]\nx = \"bx\"\ny = \"by\"\nat = [\"0 cm\", \"4 cm\"]\n";
+        let layout = ColumnLayout::read(text, "f").unwrap();
+        assert_eq!((layout.rate, layout.separator, layout.y_down), (Some(165.0), Some('\t'), true));
+        assert_eq!((layout.markers[0].at, layout.markers[0].y.column.as_deref()), (Some([0.01, -0.02]), Some("3")));
+    }
+
+    #[test]
+    fn all_mistakes_are_reported() {
+        let text = "separator = \"x\"\nrate = \"165 m\"\nspeed = 1\n[columns]\nphy = \"a\"\n[marker.a]\nx = \"1\"\n";
+        let found = ColumnLayout::read(text, "f").unwrap_err();
+        assert_eq!(found.iter().filter(|finding| !finding.path.is_empty()).count(), 5, "{found}");
+        assert!(found.iter().any(|finding| finding.did_you_mean.as_deref() == Some("phi")));
+    }
+}

@@ -1,0 +1,460 @@
+//! Reads a table of measured motion.
+
+use super::LARGEST_FILE;
+use super::layout::{ColumnLayout, ColumnSpec, NAMES};
+use super::markers::{MarkerResidual, rigid_fit};
+use super::motion::{Channel, MeasuredMotion, Sign};
+use super::table::{TextTable, is_not_a_number, number};
+use teeter_scenario::diagnostic::printable;
+use teeter_scenario::dimension::Dimension;
+use teeter_scenario::quantity;
+use teeter_scenario::suggest::nearest;
+
+/// Fewest rows of a motion: less shows no half-cycle.
+const FEWEST: usize = 8;
+
+/// The largest angle accepted, rad: beyond it the unit is wrong.
+const LARGEST_ANGLE: f64 = std::f64::consts::PI;
+
+/// The largest number accepted, as for keys of a scene.
+const LARGEST: f64 = 1e15;
+
+/// Why a table can't be read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeasuredError {
+    /// The file is too large.
+    #[error("larger than {} MB, the limit of a table", LARGEST_FILE / 1_000_000)]
+    TooLarge,
+    /// The file isn't text.
+    #[error("not a text file in UTF-8: byte {0} is wrong")]
+    NotText(usize),
+    /// Nothing is in it.
+    #[error("the file is empty")]
+    Empty,
+    /// There is a heading only.
+    #[error("there is a heading, but no row of numbers")]
+    NoRows,
+    /// A mistake in a line.
+    #[error("line {line}: {what}")]
+    Line {
+        /// The line, from 1.
+        line: usize,
+        /// The mistake.
+        what: String,
+    },
+    /// A column is missing or its unit is wrong.
+    #[error("{0}")]
+    Columns(String),
+    /// Too few rows have a value.
+    #[error("{channel} has {found} value{}, but a motion needs {FEWEST} or more", if *.found == 1 { "" } else { "s" })]
+    TooFew {
+        /// The quantity.
+        channel: &'static str,
+        /// Number of values.
+        found: usize,
+    },
+}
+
+impl MeasuredError {
+    pub(super) fn line(line: usize, what: impl Into<String>) -> Self {
+        Self::Line { line, what: what.into() }
+    }
+}
+
+/// A table of measured motion, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    t: Vec<f64>,
+    channels: Vec<(Channel, Vec<f64>)>,
+    markers: Vec<Marker>,
+}
+
+/// The coordinates of a marker.
+#[derive(Clone, Debug, PartialEq)]
+struct Marker {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    at: Option<[f64; 2]>,
+}
+
+/// The columns of a table.
+struct Columns<'a> {
+    table: &'a TextTable,
+    /// Titles and units of the heading.
+    names: Vec<(String, Option<String>)>,
+}
+
+impl Measured {
+    /// Reads a table. Of columns named `BLOCK.phi`, as in `trajectory.csv`, those of `block` count.
+    ///
+    /// # Errors
+    /// What is wrong, with the line.
+    ///
+    /// ```
+    /// use teeter_study::measured::{Channel, ColumnLayout, Measured, Sign};
+    /// let text: String = (0..20).map(|k| format!("{};{}\n", 6 * k, 20 - k)).collect();
+    /// let table = format!("t [ms]; phi [deg]\n{text}");
+    /// let motion = Measured::read(table.as_bytes(), &ColumnLayout::default(), "rocker")?.motion(Sign::AsIs);
+    /// assert_eq!(motion.t[1], 0.006);
+    /// assert_eq!(motion.values(Channel::Phi).map(|phi| phi[0]), Some(20.0_f64.to_radians()));
+    /// # Ok::<(), teeter_study::measured::MeasuredError>(())
+    /// ```
+    pub fn read(bytes: &[u8], layout: &ColumnLayout, block: &str) -> Result<Self, MeasuredError> {
+        if bytes.len() > LARGEST_FILE {
+            return Err(MeasuredError::TooLarge);
+        }
+        let text = std::str::from_utf8(bytes).map_err(|error| MeasuredError::NotText(error.valid_up_to()))?;
+        if let Some(at) = text.find('\0') {
+            return Err(MeasuredError::NotText(at));
+        }
+        let table = TextTable::split(text, layout.separator, layout.skip)?;
+        let columns = Columns { table: &table, names: names(&table) };
+        let t = columns.times(layout, block)?;
+        let mut markers = Vec::new();
+        for spec in &layout.markers {
+            let column = |axis: &ColumnSpec, name: &str| {
+                columns.read(axis, &format!("marker.{}.{name}", spec.name), Dimension::LENGTH)
+            };
+            let (x, mut y) = (column(&spec.x, "x")?, column(&spec.y, "y")?);
+            if layout.y_down {
+                y.iter_mut().for_each(|y| *y = -*y);
+            }
+            markers.push(Marker { x, y, at: spec.at });
+        }
+        let mut channels = Vec::new();
+        for channel in Channel::ALL {
+            let from_markers = matches!(channel, Channel::Phi | Channel::X | Channel::Y) && !markers.is_empty();
+            let Some(spec) = columns.wanted(layout, channel.word(), block).filter(|_| !from_markers) else { continue };
+            let mut values = columns.read(&spec, channel.word(), channel.dimension())?;
+            if layout.y_down && matches!(channel, Channel::Y | Channel::Vy) {
+                values.iter_mut().for_each(|y| *y = -*y);
+            }
+            channels.push((channel, values));
+        }
+        let measured = Self { t, channels, markers };
+        measured.check(&columns, block)?;
+        Ok(measured)
+    }
+
+    fn check(&self, columns: &Columns<'_>, block: &str) -> Result<(), MeasuredError> {
+        if self.channels.is_empty() && self.markers.is_empty() {
+            let names: Vec<String> = columns.names.iter().map(|(name, _)| format!("`{}`", printable(name))).collect();
+            let there = match names.as_slice() {
+                [] => format!("the table has {} columns without headings", columns.count()),
+                names => format!("the table has {}", names.join(", ")),
+            };
+            return Err(MeasuredError::Columns(format!(
+                "no column of the motion of `{block}` is known: {there}; name it, such as --column phi=2 or --column \
+                 phi=\"Angle\""
+            )));
+        }
+        for (channel, values) in &self.channels {
+            let found = values.iter().filter(|value| value.is_finite()).count();
+            if found < FEWEST {
+                return Err(MeasuredError::TooFew { channel: channel.word(), found });
+            }
+            if let Some(row) = values.iter().position(|phi| *channel == Channel::Phi && phi.abs() > LARGEST_ANGLE) {
+                return Err(MeasuredError::line(
+                    columns.table.rows[row].0,
+                    format!(
+                        "phi = {} rad is more than half a turn; if the angles are in degrees, say so: --unit phi=deg, or \
+                         the heading `phi [deg]`",
+                        values[row]
+                    ),
+                ));
+            }
+        }
+        let complete = (0..self.t.len()).filter(|&row| self.markers.iter().all(|marker| marker.is_seen(row))).count();
+        if !self.markers.is_empty() && complete < FEWEST {
+            return Err(MeasuredError::Columns(format!(
+                "all markers are seen together in {complete} rows, but a motion needs {FEWEST} or more"
+            )));
+        }
+        Ok(())
+    }
+
+    /// The motion as seen from one side.
+    #[must_use]
+    pub fn motion(&self, sign: Sign) -> MeasuredMotion {
+        let factor = |channel: Channel| if channel.is_mirrored() { sign.factor() } else { 1.0 };
+        let turned = |(channel, values): &(Channel, Vec<f64>)| {
+            (*channel, values.iter().map(|value| factor(*channel) * value).collect())
+        };
+        let mut channels: Vec<(Channel, Vec<f64>)> = self.channels.iter().map(turned).collect();
+        let (poses, residual, placed) = self.poses(sign);
+        if residual.is_some() {
+            let of = |pick: &dyn Fn(&[f64; 3]) -> f64| poses.iter().map(pick).collect::<Vec<f64>>();
+            channels.push((Channel::Phi, of(&|pose| pose[2])));
+            if placed {
+                channels.push((Channel::X, of(&|pose| pose[0])));
+                channels.push((Channel::Y, of(&|pose| pose[1])));
+            }
+        }
+        channels.sort_by_key(|(channel, _)| *channel);
+        let phi_from_first_row = residual.is_some() && !placed;
+        MeasuredMotion { t: self.t.clone(), channels, markers: residual, phi_from_first_row }
+    }
+
+    /// x, y and φ of the body in each row by a rigid fit to the markers, NaN in rows where one isn't
+    /// seen.
+    fn poses(&self, sign: Sign) -> (Vec<[f64; 3]>, Option<MarkerResidual>, bool) {
+        let seen = |row: usize| -> Option<Vec<[f64; 2]>> {
+            let each = self.markers.iter();
+            each.map(|marker| marker.is_seen(row).then(|| [sign.factor() * marker.x[row], marker.y[row]])).collect()
+        };
+        let given: Option<Vec<[f64; 2]>> = self.markers.iter().map(|marker| marker.at).collect();
+        let placed = given.is_some();
+        let first = || (0..self.t.len()).find_map(seen);
+        let Some(body) = given.filter(|at| !at.is_empty()).or_else(first).filter(|body| body.len() > 1) else {
+            return (Vec::new(), None, false);
+        };
+        let (mut poses, mut sum, mut count, mut worst) = (Vec::new(), 0.0, 0_usize, (0.0, 0.0));
+        let mut last = 0.0;
+        for row in 0..self.t.len() {
+            let Some(points) = seen(row) else {
+                poses.push([f64::NAN; 3]);
+                continue;
+            };
+            let pose = rigid_fit(&body, &points);
+            for (point, place) in points.iter().zip(&body) {
+                let at = pose.of(*place);
+                let off = (point[0] - at[0]).hypot(point[1] - at[1]);
+                sum += off * off;
+                count += 1;
+                if off > worst.0 {
+                    worst = (off, self.t[row]);
+                }
+            }
+            // The branch of the angle that is nearest to the row before.
+            let phi = pose.phi + std::f64::consts::TAU * ((last - pose.phi) / std::f64::consts::TAU).round();
+            last = phi;
+            poses.push([pose.origin[0], pose.origin[1], phi]);
+        }
+        let rms = (sum / count.max(1) as f64).sqrt();
+        let residual = MarkerResidual { markers: body.len(), rms, max: worst.0, t: worst.1, placed };
+        (poses, Some(residual), placed)
+    }
+}
+
+/// What would be right instead, to be added to an error.
+fn remedy(error: &quantity::QuantityError) -> String {
+    error.remedy().map(|remedy| format!("; {remedy}")).unwrap_or_default()
+}
+
+impl Marker {
+    fn is_seen(&self, row: usize) -> bool {
+        self.x[row].is_finite() && self.y[row].is_finite()
+    }
+}
+
+/// Titles and units of the heading.
+fn names(table: &TextTable) -> Vec<(String, Option<String>)> {
+    let one = |cell: &String| {
+        let (open, close) = if cell.ends_with(']') { ('[', ']') } else { ('(', ')') };
+        match cell.strip_suffix(close).and_then(|inner| inner.rsplit_once(open)) {
+            Some((title, unit)) => (title.trim().to_owned(), Some(unit.trim().to_owned())),
+            None => (cell.clone(), None),
+        }
+    };
+    table.heading.iter().flat_map(|(_, cells)| cells.iter().map(one)).collect()
+}
+
+impl Columns<'_> {
+    fn count(&self) -> usize {
+        self.table.rows.first().map_or(0, |(_, cells)| cells.len())
+    }
+
+    /// The column of a quantity if it is given or has its name.
+    fn wanted(&self, layout: &ColumnLayout, name: &str, block: &str) -> Option<ColumnSpec> {
+        let given = layout.columns.get(name).cloned().unwrap_or_default();
+        if given.column.is_some() {
+            return Some(given);
+        }
+        let names = match name {
+            "t" => vec!["t".to_owned(), "time".to_owned()],
+            "phi" => vec![format!("{block}.phi"), "phi".to_owned(), "φ".to_owned()],
+            name => vec![format!("{block}.{name}"), name.to_owned()],
+        };
+        let found = names.into_iter().find(|name| self.place(name).is_some())?;
+        Some(ColumnSpec { column: Some(found), unit: given.unit })
+    }
+
+    fn place(&self, column: &str) -> Option<usize> {
+        let by_name = self.names.iter().position(|(name, _)| name.to_lowercase() == column.trim().to_lowercase());
+        let number = || column.trim().parse::<usize>().ok().and_then(|number| number.checked_sub(1));
+        by_name.or_else(|| number().filter(|place| *place < self.count()))
+    }
+
+    /// The values of a column in SI units; NaN for empty cells.
+    fn read(&self, spec: &ColumnSpec, what: &str, dimension: Dimension) -> Result<Vec<f64>, MeasuredError> {
+        let name = spec.column.as_deref().unwrap_or(what);
+        let Some(place) = self.place(name) else { return Err(self.missing(name, what)) };
+        if let Some((line, cells)) = self.table.heading.as_ref().filter(|(_, cells)| cells.len() != self.count()) {
+            return Err(MeasuredError::line(
+                *line,
+                format!("{} headings, but the rows have {} columns", cells.len(), self.count()),
+            ));
+        }
+        let heading = self.names.get(place).and_then(|(_, unit)| unit.as_deref());
+        let scale = match spec.unit.as_deref().or(heading) {
+            None => 1.0,
+            Some(unit) => quantity::parse(&format!("1 {unit}"), dimension).map_err(|error| {
+                MeasuredError::Columns(format!("the unit `{}` of {what}: {error}{}", printable(unit), remedy(&error)))
+            })?,
+        };
+        let mut values = Vec::with_capacity(self.table.rows.len());
+        for (line, cells) in &self.table.rows {
+            let cell = cells[place].as_str();
+            if cell.is_empty() {
+                values.push(f64::NAN);
+                continue;
+            }
+            let wrong = |why: &str| {
+                MeasuredError::line(*line, format!("`{}` in column {} ({what}) {why}", printable(cell), place + 1))
+            };
+            if is_not_a_number(cell) {
+                return Err(wrong("is not a number; leave the cell of a lost frame empty"));
+            }
+            let value = number(cell, self.table.decimal_comma).ok_or_else(|| wrong("is not a number"))? * scale;
+            if !(value.abs() <= LARGEST) {
+                return Err(wrong(&format!("is beyond {LARGEST:e}, the limit of numbers")));
+            }
+            values.push(value);
+        }
+        Ok(values)
+    }
+
+    fn missing(&self, name: &str, what: &str) -> MeasuredError {
+        let titles = self.names.iter().map(|(name, _)| name.as_str());
+        let near = nearest(name, titles.clone())
+            .map(|near| format!("; did you mean `{}`?", printable(near)))
+            .unwrap_or_default();
+        let there: Vec<String> = titles.map(|name| format!("`{}`", printable(name))).collect();
+        let there = match there.as_slice() {
+            [] => format!("it has {} columns without headings", self.count()),
+            there => format!("it has {}", there.join(", ")),
+        };
+        MeasuredError::Columns(format!("no column `{}` for {what}: {there}{near}", printable(name)))
+    }
+
+    fn times(&self, layout: &ColumnLayout, block: &str) -> Result<Vec<f64>, MeasuredError> {
+        let spec = self.wanted(layout, "t", block);
+        let times = match (layout.rate, spec) {
+            (Some(rate), None) => (0..self.table.rows.len()).map(|row| row as f64 / rate).collect(),
+            // With a rate, a column of times counts frames.
+            (Some(rate), Some(spec)) if layout.columns.contains_key("t") => {
+                let frames = self.read(&ColumnSpec { unit: None, ..spec }, "t", Dimension::NONE)?;
+                frames.into_iter().map(|frame| frame / rate).collect()
+            }
+            (Some(_), Some(_)) => {
+                return Err(MeasuredError::Columns(
+                    "the table has a column of times, so it needs no rate; if the column counts frames, name it: --column t=1"
+                        .to_owned(),
+                ));
+            }
+            (None, Some(spec)) => self.read(&spec, "t", Dimension::TIME)?,
+            (None, None) => {
+                let names = NAMES[1..].join(", ");
+                return Err(match self.names.is_empty() {
+                    true => MeasuredError::Columns(format!(
+                        "the table has {} columns without headings: say which is which, such as --column t=1 --column phi=2 \
+                         (or {names}); for rows at a constant rate, --rate \"165 Hz\"",
+                        self.count()
+                    )),
+                    false => MeasuredError::Columns(format!(
+                        "{}; for rows at a constant rate, give --rate \"165 Hz\"",
+                        self.missing("t", "times")
+                    )),
+                });
+            }
+        };
+        if let Some(row) = times.iter().position(|t| t.is_nan()) {
+            return Err(MeasuredError::line(self.table.rows[row].0, "no time"));
+        }
+        if let Some(row) = times.windows(2).position(|t| !(t[1] > t[0])) {
+            return Err(MeasuredError::line(
+                self.table.rows[row + 1].0,
+                format!("t = {} s is not after the row before, t = {} s", times[row + 1], times[row]),
+            ));
+        }
+        Ok(times)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str, layout: &ColumnLayout) -> Result<Measured, String> {
+        Measured::read(text.as_bytes(), layout, "rocker").map_err(|error| error.to_string())
+    }
+
+    fn rows(row: impl Fn(usize) -> String) -> String {
+        (0..20).map(|k| row(k) + "\n").collect()
+    }
+
+    #[test]
+    fn frames_and_lost_cells_are_understood() {
+        let mut layout = ColumnLayout { rate: Some(165.0), ..ColumnLayout::default() };
+        let text = rows(|k| format!("{},{}", 100 + k, if k == 3 { String::new() } else { k.to_string() }));
+        layout.set_column("phi", "2").unwrap();
+        layout.set_unit("phi", "deg").unwrap();
+        layout.set_column("t", "1").unwrap();
+        let motion = read(&text, &layout).unwrap().motion(Sign::Reversed);
+        assert_eq!(motion.t[2], 102.0 / 165.0);
+        let phi = motion.values(Channel::Phi).unwrap();
+        assert!(phi[3].is_nan() && (phi[4] + 4.0_f64.to_radians()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn markers_give_position_and_angle_from_both_sides() {
+        let toml = "[marker.a]\nx = \"ax\"\ny = \"ay\"\nunit = \"mm\"\nat = [\"-1 cm\", \"2 cm\"]\n\
+            [marker.b]\nx = \"bx\"\ny = \"by\"\nunit = \"mm\"\nat = [\"1 cm\", \"3 cm\"]\n";
+        let layout = ColumnLayout::read(toml, "f").unwrap();
+        for (sign, name) in [(1.0, Sign::AsIs), (-1.0, Sign::Reversed)] {
+            let row = |k: usize| {
+                let phi: f64 = 0.01 * k as f64;
+                let place =
+                    |x: f64, y: f64| (40.0 + x * phi.cos() - y * phi.sin(), 70.0 + x * phi.sin() + y * phi.cos());
+                let (a, b) = (place(-10.0, 20.0), place(10.0, 30.0));
+                format!("{}\t{}\t{}\t{}\t{}", 0.01 * k as f64, sign * a.0, a.1, sign * b.0, b.1)
+            };
+            let text = format!("t\tax\tay\tbx\tby\n{}", rows(row));
+            let motion = read(&text, &layout).unwrap().motion(name);
+            let close = |channel, value: f64| (motion.values(channel).unwrap()[7] - value).abs() < 1e-12;
+            assert!(close(Channel::Phi, 0.07) && close(Channel::X, 0.04) && close(Channel::Y, 0.07));
+            assert!(motion.markers.unwrap().rms < 1e-12);
+        }
+    }
+
+    #[test]
+    fn mistakes_name_the_line() {
+        let plain = ColumnLayout::default();
+        let message = |text: &str| read(text, &plain).unwrap_err();
+        let good = rows(|k| format!("{k},0.1"));
+        assert_eq!(message(""), "the file is empty");
+        assert_eq!(message("t,phi\n"), "there is a heading, but no row of numbers");
+        assert_eq!(message("t,phi\n0,0.1\n"), "phi has 1 value, but a motion needs 8 or more");
+        assert_eq!(message(&format!("t,phi\n{good}5,0.1\n")), "line 22: t = 5 s is not after the row before, t = 19 s");
+        assert_eq!(
+            message("t,phi\n0,0.1\n1,nan\n"),
+            "line 3: `nan` in column 2 (phi) is not a number; leave the cell of a lost frame empty"
+        );
+        assert_eq!(message("t,phi\n0,0.1\n1\n"), "line 3: 1 column, but the rows before have 2");
+        assert!(
+            message(&format!("t,angle\n{good}"))
+                .starts_with("no column of the motion of `rocker` is known: the table has `t`, `angle`")
+        );
+        assert!(message(&good).starts_with("the table has 2 columns without headings"));
+        assert!(message(&format!("t,phi [kg]\n{good}")).starts_with("the unit `kg` of phi"));
+        assert!(
+            message(&format!("t,phi\n{}", rows(|k| format!("{k},5"))))
+                .starts_with("line 2: phi = 5 rad is more than half a turn")
+        );
+        assert_eq!(
+            Measured::read(b"\xff\xd8\0", &plain, "b").unwrap_err().to_string(),
+            "not a text file in UTF-8: byte 0 is wrong"
+        );
+    }
+}
