@@ -71,8 +71,10 @@ fn runs_that_are_right_keep_quiet() {
             continue;
         }
         let stem = path.file_stem().unwrap().to_str().unwrap().to_owned();
-        // Its columns chatter under the lintel; how they do isn't resolved, and the run says so.
-        assert_eq!(warned(&stem, 20, &[]), stem == "lintel", "{stem} as it is");
+        // Columns that chatter under the lintel, and stones that hit several others in a step: how they do
+        // isn't resolved, and the run says so.
+        let expected = ["lintel", "pile-of-stones"].contains(&&*stem);
+        assert_eq!(warned(&stem, 20, &[]), expected, "{stem} as it is");
     }
     // Within 1 %.
     for (number, (stem, sets)) in [

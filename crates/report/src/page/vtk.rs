@@ -165,9 +165,8 @@ impl Picture {
             );
         };
         array("<Points>\n", "Points", "Float64", 3, &vectors(&self.points), "</Points>\n");
-        let lines = |text: &dyn Fn(&Cell) -> String| {
-            self.cells.iter().map(|cell| text(cell) + "\n").collect::<String>()
-        };
+        let lines =
+            |text: &dyn Fn(&Cell) -> String| self.cells.iter().map(|cell| text(cell) + "\n").collect::<String>();
         let connectivity =
             lines(&|(_, _, points)| points.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "));
         array("<Cells>\n", "connectivity", "Int64", 1, &connectivity, "");

@@ -38,8 +38,14 @@ fn every_shipped_scene_runs_or_says_why_it_does_not() {
             assert_eq!(tally.unconverged_steps, 0, "{name} {scheme}");
             assert!(simulation.state.q.iter().chain(&simulation.state.v).all(|x| x.is_finite()), "{name} {scheme}");
             if name != "compliant-drop" {
-                // A hump comes out between two looks, with the velocity that it has by then.
-                let most = if name == "lintel" { 1e-5 } else { 1e-13 };
+                let most = match &*name {
+                    // A hump comes out between two looks, with the velocity that it has by then.
+                    "lintel" => 1e-5,
+                    // Falling stones push others into their neighbours faster than the rounds of a step undo;
+                    // without projection it is 1.4 mm.
+                    "pile-of-stones" => 1e-3,
+                    _ => 1e-13,
+                };
                 assert!(tally.max_penetration < most, "{name} {scheme}: {:e} m", tally.max_penetration);
             }
         }
