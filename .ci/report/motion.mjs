@@ -46,8 +46,9 @@ export function wrongVerdicts(summary, trajectory, { scenery, frames }) {
       say("there are no columns of it");
       continue;
     }
-    // On the level, a rectangle as drawn: what α means needs no more than its table.
-    const level = block.upright && block.alpha !== null && scenery.incline === 0 && !turns;
+    // On the level, a rectangle that stands as drawn at the start: what α means needs no more than its table.
+    const stands = block.alpha !== null && Math.abs(at(trajectory[0], "phi")) < block.alpha;
+    const level = block.upright && stands && scenery.incline === 0 && !turns;
     const beyond = (row) => Math.abs(at(row, "phi")) > block.alpha;
     if (level) {
       const share = largest(trajectory, (row) => at(row, "phi")) / block.alpha;

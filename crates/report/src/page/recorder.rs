@@ -71,7 +71,7 @@ const BUCKETS: usize = 2000;
 
 /// Most numbers on the page for curves, and as many again for pictures of few bodies: at some 10 bytes each the page of
 /// ten bodies stays below 1.2 MB.
-pub(super) const NUMBERS: usize = 120_000;
+pub(super) const NUMBERS: usize = 80_000;
 
 /// Most numbers kept for curves during the run.
 const KEPT_NUMBERS: usize = 480_000;
