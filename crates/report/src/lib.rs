@@ -41,8 +41,8 @@ pub use columns::columns;
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
 pub use made_energy::ENERGY_MADE;
 pub use page::{
-    HalfCycle, Joint, PageRecorder, STYLE, ThrustLine, VTK_SERIES, VtkRecorder, escaped, figures, half_cycles,
-    record_figures, record_page, render, spectrum_periods, thrust_lines,
+    HalfCycle, Joint, PageRecorder, STYLE, ThrustLine, VTK_SERIES, VtkRecorder, document, escaped, figures,
+    half_cycles, record_figures, record_page, render, spectrum_periods, thrust_lines,
 };
 pub use readable::{shortest, with_digits, with_unit};
 pub use recorder::{ImpactRow, Record, Recorder};

@@ -29,7 +29,7 @@ mod vtk;
 pub use accelerograms::{record_figures, record_page, spectrum_periods};
 pub use chain::{Joint, ThrustLine, thrust_lines};
 pub use figures::figures;
-pub use html::{STYLE, render};
+pub use html::{STYLE, document, render};
 pub(crate) use recorder::Kept;
 pub use recorder::PageRecorder;
 pub use rocking::{HalfCycle, half_cycles};

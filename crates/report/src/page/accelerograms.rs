@@ -58,17 +58,8 @@ pub fn record_figures(record: &Arc<RecordScene>) -> Vec<(String, String)> {
 /// corrected.
 #[must_use]
 pub fn record_page(record: &Arc<RecordScene>, title: &str, subtitle: &str) -> String {
-    let (title, subtitle) = (escaped(title), escaped(subtitle));
     let section = section(std::slice::from_ref(record), &[RecordSummary::new(record)]);
-    format!(
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta name=\"color-scheme\" content=\"light dark\">\n\
-         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
-         <title>{title}</title>\n<style>\n{}main {{ display: block; }}\n</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n\
-         <p id=\"subtitle\">{subtitle}</p>\n</header>\n<main>\n{section}</main>\n</body>\n</html>\n",
-        super::STYLE
-    )
+    super::document(title, subtitle, "", &section)
 }
 
 /// Response spectra over the natural period; `None` without records.

@@ -26,6 +26,21 @@ const SCRIPTS: [&str; 7] = [
     include_str!("../../assets/main.js"),
 ];
 
+/// A self-contained page without scripts in the style of a run's report: `title` and `subtitle` are plain
+/// text, `style` is CSS of its own, and `main` the HTML of its main part.
+#[must_use]
+pub fn document(title: &str, subtitle: &str, style: &str, main: &str) -> String {
+    let (title, subtitle) = (escaped(title), escaped(subtitle));
+    format!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"color-scheme\" content=\"light dark\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
+         <title>{title}</title>\n<style>\n{STYLE}main {{ display: block; }}\n{style}</style>\n</head>\n<body>\n<header>\n\
+         <h1>{title}</h1>\n<p id=\"subtitle\">{subtitle}</p>\n</header>\n<main>\n{main}</main>\n</body>\n</html>\n"
+    )
+}
+
 /// The page of a run, `report.html`: one file that loads nothing. `scene_toml` is the text of the scene as run.
 ///
 /// The same run gives the same page: what the clock measured is in `summary.json` only.

@@ -15,7 +15,7 @@ pub(crate) use trace::Tracer;
 pub use trace::{MotionTrace, TraceError};
 pub use write::sentences_of;
 pub use write::{FILES, half_cycle_csv, impact_csv, json, page, rows_csv, svg_figures};
-pub(crate) use write::{fixed, horizon_note, html_head, html_list, html_table, motion_figures};
+pub(crate) use write::{STYLE, fixed, horizon_note, motion_figures};
 
 use crate::measured::{Channel, LocalFit, Measured, MeasuredMotion, local_fit};
 

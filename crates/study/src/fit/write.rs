@@ -1,11 +1,12 @@
 //! What a fit writes.
 
 use super::{Estimate, Fit};
-use crate::compare::{fixed, horizon_note, html_head, html_list, html_table, motion_figures, sentences_of};
-use crate::write::{percent, short};
+use crate::compare::{STYLE, fixed, horizon_note, motion_figures, sentences_of};
+use crate::write::{html_list, html_table, percent, short};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use teeter_plot::{AxisError, Theme, escaped};
+use teeter_report::document;
 
 /// All files that a fit may write; the figures depend on the table.
 pub const FILES: [&str; 10] = [
@@ -23,6 +24,7 @@ pub const FILES: [&str; 10] = [
 
 /// A key whose standard error is more than this share of its range is hardly determined.
 const HARDLY: f64 = 0.15;
+
 /// `fit.csv`: all values tried: `stage`, a column for each key (in its unit), `cost` (empty if the run failed).
 #[must_use]
 pub fn csv(fit: &Fit) -> String {
@@ -162,7 +164,7 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
 pub fn page(fit: &Fit, title: &str, names: [&str; 3]) -> Result<String, AxisError> {
     let [scene, measured, block] = names;
     let subtitle = format!("{scene} · {measured} · block {block} · teeter {}", env!("CARGO_PKG_VERSION"));
-    let mut html = html_head(&format!("Fitted to a measured motion: {title}"), &subtitle);
+    let mut html = String::new();
     let rows = fit.estimates.iter().filter(|found| found.value.is_finite()).map(|found| {
         let (low, high) = found.interval();
         let number = |value: f64| escaped(&format!("{value:.5}")).replace('-', "\u{2212}");
@@ -194,11 +196,11 @@ pub fn page(fit: &Fit, title: &str, names: [&str; 3]) -> Result<String, AxisErro
     let _ = write!(
         html,
         "{}<p class=\"note\">Near 1 or −1: the motion determines a combination of the two, not each by itself.</p></section>\n\
-         <section class=\"panel\"><h3>How they are compared</h3>\n{}</section>\n</main>\n</body>\n</html>\n",
+         <section class=\"panel\"><h3>How they are compared</h3>\n{}</section>\n",
         html_table(&heading, rows),
         html_list(&sentences_of(&fit.comparison))
     );
-    Ok(html)
+    Ok(document(&format!("Fitted to a measured motion: {title}"), &subtitle, STYLE, &html))
 }
 
 /// The figures for files, with their names.

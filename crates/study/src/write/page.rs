@@ -6,10 +6,10 @@ use super::{duration, findings, percent, pruning, short};
 use crate::{Quantity, Row, Tradeoff};
 use std::fmt::Write;
 use teeter_plot::{AxisError, escaped};
-use teeter_report::STYLE;
+use teeter_report::document;
 
 const OWN_STYLE: &str = "\
-main { display: block; }\nmain > section { margin-top: 1.75rem; }\nh2 { font-size: 1.15rem; }\n\
+main > section { margin-top: 1.75rem; }\nh2 { font-size: 1.15rem; }\n\
 .advised { margin-top: .9rem; }\n.advised p { margin-top: .25rem; max-width: 60rem; overflow-wrap: anywhere; }\n\
 code { font-size: .9em; overflow-wrap: anywhere; white-space: pre-wrap; }\n\
 .command { background: var(--soft); border-radius: 5px; padding: .3rem .6rem; }\n\
@@ -27,19 +27,10 @@ th.setting small { font-weight: 400; }\n\
 /// # Errors
 /// As [`figures`](super::figures).
 pub fn page(study: &Tradeoff, scene: &[&str]) -> Result<String, AxisError> {
-    let title = escaped(&format!("Speed against accuracy: {}", study.title));
-    let mut html = format!(
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta name=\"color-scheme\" content=\"light dark\">\n\
-         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}{OWN_STYLE}{}</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n\
-         <p id=\"subtitle\">{} settings tried · t = {} s · teeter {}</p>\n</header>\n<main>\n",
-        front::STYLE,
-        study.rows.len(),
-        study.end,
-        env!("CARGO_PKG_VERSION")
-    );
+    let title = format!("Speed against accuracy: {}", study.title);
+    let subtitle =
+        format!("{} settings tried · t = {} s · teeter {}", study.rows.len(), study.end, env!("CARGO_PKG_VERSION"));
+    let mut html = String::new();
     let page = Page { study, scene };
     page.advice(&mut html);
     front::section(&mut html, study)?;
@@ -57,8 +48,7 @@ pub fn page(study: &Tradeoff, scene: &[&str]) -> Result<String, AxisError> {
     );
     page.candidates(&mut html);
     page.checks(&mut html);
-    html.push_str("</main>\n</body>\n</html>\n");
-    Ok(html)
+    Ok(document(&title, &subtitle, &format!("{OWN_STYLE}{}", front::STYLE), &html))
 }
 
 /// The settings in a sentence, between backquotes, as code.

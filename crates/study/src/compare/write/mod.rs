@@ -8,7 +8,7 @@ mod table;
 pub(crate) use figure::motion_figures;
 pub use figure::svg_figures;
 pub use json::json;
-pub(crate) use page::{fixed, horizon_note, html_head, html_list, html_table};
+pub(crate) use page::{STYLE, fixed, horizon_note};
 pub use page::{page, sentences_of};
 pub use table::{half_cycle_csv, impact_csv, rows_csv};
 

@@ -3,52 +3,17 @@
 use super::motion_figures;
 use crate::compare::{ChannelComparison, Comparison};
 use crate::measured::Sign;
-use crate::write::{percent, short};
+use crate::write::{html_list, html_table, percent, short};
 use std::fmt::Write;
-use teeter_plot::{AxisError, Theme, escaped};
-use teeter_report::STYLE;
+use teeter_plot::{AxisError, Theme};
+use teeter_report::document;
 
-const OWN_STYLE: &str = "\
-main { display: block; }\nmain > section { margin-top: 1.5rem; }\n\
+pub(crate) const STYLE: &str = "\
+main > section { margin-top: 1.5rem; }\n\
 .pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); gap: 1rem; }\n\
 .pictures svg { display: block; width: 100%; height: auto; max-width: 46rem; margin: 0 auto; }\n\
 section li { margin: .3rem 0; overflow-wrap: anywhere; }\ncode { font-size: .9em; }\n\
 td:first-child { text-align: left; }\n.bar { display: inline-block; height: .6em; background: var(--c0); }\n";
-
-/// The head of a page with its title and subtitle, up to the beginning of its main part.
-pub(crate) fn html_head(title: &str, subtitle: &str) -> String {
-    let title = escaped(title);
-    format!(
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta name=\"color-scheme\" content=\"light dark\">\n\
-         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}{OWN_STYLE}</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n\
-         <p id=\"subtitle\">{}</p>\n</header>\n<main>\n",
-        escaped(subtitle)
-    )
-}
-
-/// A table with a heading; cells are HTML.
-pub(crate) fn html_table(heading: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let mut html = "<div class=\"scroll\" tabindex=\"0\"><table>\n<thead><tr>".to_owned();
-    for cell in heading {
-        let _ = write!(html, "<th scope=\"col\">{cell}</th>");
-    }
-    html.push_str("</tr></thead>\n<tbody>\n");
-    for row in rows {
-        let cells: String = row.iter().map(|cell| format!("<td>{cell}</td>")).collect();
-        let _ = writeln!(html, "<tr>{cells}</tr>");
-    }
-    html.push_str("</tbody></table></div>\n");
-    html
-}
-
-/// Sentences as a list.
-pub(crate) fn html_list(sentences: &[String]) -> String {
-    let items: String = sentences.iter().map(|sentence| format!("<li>{}</li>\n", escaped(sentence))).collect();
-    format!("<ul>\n{items}</ul>\n")
-}
 
 /// A number with so many decimals and a real minus.
 pub(crate) fn fixed(value: f64, decimals: usize) -> String {
@@ -140,8 +105,7 @@ fn quantity_row(found: &ChannelComparison) -> Vec<String> {
 pub fn page(comparison: &Comparison, title: &str, names: [&str; 3]) -> Result<String, AxisError> {
     let [run, measured, block] = names;
     let subtitle = format!("{run} · {measured} · block {block} · teeter {}", env!("CARGO_PKG_VERSION"));
-    let mut html = html_head(&format!("Measured and simulated: {title}"), &subtitle);
-    html.push_str("<section class=\"panel\"><h3>Motion</h3>\n<div class=\"pictures\">\n");
+    let mut html = "<section class=\"panel\"><h3>Motion</h3>\n<div class=\"pictures\">\n".to_owned();
     for (_, svg) in motion_figures(comparison, None, Theme::Page)? {
         html.push_str(&svg);
     }
@@ -168,10 +132,10 @@ pub fn page(comparison: &Comparison, title: &str, names: [&str; 3]) -> Result<St
     html.push_str(&impacts(comparison));
     let _ = write!(
         html,
-        "<section class=\"panel\"><h3>How they are compared</h3>\n{}</section>\n</main>\n</body>\n</html>\n",
+        "<section class=\"panel\"><h3>How they are compared</h3>\n{}</section>\n",
         html_list(&sentences_of(comparison))
     );
-    Ok(html)
+    Ok(document(&format!("Measured and simulated: {title}"), &subtitle, STYLE, &html))
 }
 
 /// What the dashed line in the figures is, if there is one.

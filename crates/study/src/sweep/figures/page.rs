@@ -1,12 +1,13 @@
 //! `study.html`: a self-contained page in the style of a run's report.
 
 use super::{Ensemble, StudyFigure};
+use crate::write::{html_list, html_table};
 use std::fmt::Write;
 use teeter_plot::escaped;
-use teeter_report::STYLE;
+use teeter_report::document;
 
 const OWN_STYLE: &str = "\
-main { display: block; }\nmain > section { margin-top: 1.5rem; }\n\
+main > section { margin-top: 1.5rem; }\n\
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); gap: 1rem; }\n\
 .figures svg { display: block; width: 100%; height: auto; max-width: 44rem; margin: 0 auto; }\n\
 li { margin: .3rem 0; overflow-wrap: anywhere; }\ntd:first-child { text-align: left; }\n";
@@ -14,7 +15,6 @@ li { margin: .3rem 0; overflow-wrap: anywhere; }\ntd:first-child { text-align: l
 /// The page of the figures of a study, or of several side by side.
 #[must_use]
 pub fn study_page(title: &str, studies: &[Ensemble], figures: &[StudyFigure]) -> String {
-    let title = escaped(title);
     let told = |study: &Ensemble| {
         let failed = match study.table.incomplete() {
             0 => String::new(),
@@ -24,21 +24,12 @@ pub fn study_page(title: &str, studies: &[Ensemble], figures: &[StudyFigure]) ->
         format!("{name}{} cases{failed}", study.table.len())
     };
     let subtitle = studies.iter().map(told).collect::<Vec<_>>().join(" · ");
-    let mut html = format!(
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta name=\"color-scheme\" content=\"light dark\">\n\
-         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}{OWN_STYLE}</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n\
-         <p id=\"subtitle\">{} · teeter {}</p>\n</header>\n<main>\n",
-        escaped(&subtitle),
-        env!("CARGO_PKG_VERSION")
-    );
+    let subtitle = format!("{subtitle} · teeter {}", env!("CARGO_PKG_VERSION"));
+    let mut html = String::new();
     for figure in figures {
         section(&mut html, figure);
     }
-    html.push_str("</main>\n</body>\n</html>\n");
-    html
+    document(title, &subtitle, OWN_STYLE, &html)
 }
 
 fn section(html: &mut String, figure: &StudyFigure) {
@@ -53,22 +44,11 @@ fn section(html: &mut String, figure: &StudyFigure) {
     // Of a single study its name stands in the heading, and a column without an entry says nothing.
     let shown: Vec<usize> =
         (0..header.len()).filter(|k| rows.iter().any(|row| row.get(*k).is_some_and(|cell| !cell.is_empty()))).collect();
-    html.push_str("<div class=\"scroll\" tabindex=\"0\"><table>\n<thead><tr>");
-    for cell in shown.iter().filter_map(|k| header.get(*k)) {
-        let _ = write!(html, "<th scope=\"col\">{}</th>", escaped(cell));
-    }
-    html.push_str("</tr></thead>\n<tbody>\n");
-    for row in rows {
-        html.push_str("<tr>");
-        for cell in shown.iter().filter_map(|k| row.get(*k)) {
-            let _ = write!(html, "<td>{}</td>", escaped(cell));
-        }
-        html.push_str("</tr>\n");
-    }
-    html.push_str("</tbody></table></div>\n<ul>\n");
-    for note in &figure.notes {
-        let _ = writeln!(html, "<li>{}</li>", escaped(note));
-    }
+    let heading: Vec<String> = shown.iter().filter_map(|k| header.get(*k)).map(|cell| escaped(cell)).collect();
+    let heading: Vec<&str> = heading.iter().map(String::as_str).collect();
+    let rows = rows.iter().map(|row| shown.iter().filter_map(|k| row.get(*k)).map(|cell| escaped(cell)).collect());
+    html.push_str(&html_table(&heading, rows));
+    html.push_str(&html_list(&figure.notes));
     let tables = figure.tables.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
-    let _ = writeln!(html, "</ul>\n<p class=\"note\">Numbers: {tables}.</p></section>");
+    let _ = writeln!(html, "<p class=\"note\">Numbers: {tables}.</p></section>");
 }
