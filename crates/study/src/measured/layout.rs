@@ -2,10 +2,9 @@
 
 use crate::sweep::spec::{Node, Reader, entries};
 use std::collections::BTreeMap;
-use teeter_scenario::diagnostic::{Diagnostic, Diagnostics};
+use teeter_scenario::diagnostic::Diagnostics;
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::quantity;
-use toml::de::DeTable;
 
 /// The column of a quantity.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -68,16 +67,7 @@ impl ColumnLayout {
     /// Everything that is wrong in it.
     pub fn read(text: &str, file: &str) -> Result<Self, Diagnostics> {
         let mut reader = Reader::new(file, text);
-        let root = match DeTable::parse(text) {
-            Ok(root) => root,
-            Err(error) => {
-                let mut finding = Diagnostic::error(file, format!("not valid TOML: {}", error.message()));
-                if let Some(span) = error.span() {
-                    reader.place(&mut finding, span);
-                }
-                return Err(finding.into());
-            }
-        };
+        let root = reader.root()?;
         let mut layout = Self::default();
         for (name, node) in entries(root.get_ref()) {
             match (name, node.table()) {

@@ -82,16 +82,7 @@ impl Sweep {
     /// Everything that is wrong in it.
     pub fn read(text: &str, file: &str, files: &FilesOf<'_>) -> Result<Self, Diagnostics> {
         let mut reader = Reader::new(file, text);
-        let root = match DeTable::parse(text) {
-            Ok(root) => root,
-            Err(error) => {
-                let mut finding = Diagnostic::error(file, format!("not valid TOML: {}", error.message()));
-                if let Some(span) = error.span() {
-                    reader.place(&mut finding, span);
-                }
-                return Err(finding.into());
-            }
-        };
+        let root = reader.root()?;
         let mut sweep = Self {
             scene: String::new(),
             axes: Vec::new(),

@@ -1,4 +1,4 @@
-//! The tree of a sweep file, with findings that point into it.
+//! The tree of a TOML file, such as a sweep file, with findings that point into it.
 
 use std::ops::Range;
 use teeter_scenario::diagnostic::{Diagnostic, Diagnostics};
@@ -6,7 +6,7 @@ use teeter_scenario::suggest::nearest;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The text of a sweep file and what was found wrong in it.
+/// The text of a file and what was found wrong in it.
 pub(crate) struct Reader<'a> {
     pub(crate) file: &'a str,
     pub(crate) text: &'a str,
@@ -71,6 +71,20 @@ pub(crate) fn entries<'a, 't>(table: &'a DeTable<'t>) -> Vec<(&'a str, Node<'a, 
 impl<'a> Reader<'a> {
     pub(crate) fn new(file: &'a str, text: &'a str) -> Self {
         Self { file, text, found: Diagnostics::default() }
+    }
+
+    /// The root of the tree.
+    ///
+    /// # Errors
+    /// Where the text isn't TOML.
+    pub(crate) fn root(&self) -> Result<Spanned<DeTable<'a>>, Diagnostics> {
+        DeTable::parse(self.text).map_err(|error| {
+            let mut finding = Diagnostic::error(self.file, format!("not valid TOML: {}", error.message()));
+            if let Some(span) = error.span() {
+                self.place(&mut finding, span);
+            }
+            finding.into()
+        })
     }
 
     /// The text of a value as it is written.
