@@ -2,8 +2,6 @@
 
 use crate::render::Presenter;
 use clap::Args;
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::quantity;
@@ -116,18 +114,5 @@ impl MeasuredOptions {
 
 /// The bytes of a file; of one that is too large only enough to notice.
 pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, String> {
-    let told = |error: &str| format!("error: {}: {error}", path.display());
-    match std::fs::metadata(path) {
-        Ok(found) if found.is_dir() => return Err(told("is a folder, not a file")),
-        Ok(found) if !found.is_file() => return Err(told("is a pipe or a device: give a regular file")),
-        _ => {}
-    }
-    let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(LARGEST_FILE as u64 + 1).read_to_end(&mut bytes));
-    read.map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => told("there is no such file"),
-        std::io::ErrorKind::PermissionDenied => told("no permission to read it"),
-        _ => told(&format!("can't be read: {error}")),
-    })?;
-    Ok(bytes)
+    teeter_run::read_regular(path, LARGEST_FILE).map_err(|why| format!("error: {}: {why}", path.display()))
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use teeter_record::{Record, STANDARD_GRAVITY};
 use teeter_report::{RecordSummary, Results, record_figures, record_page, spectrum_periods};
-use teeter_scenario::diagnostic::Diagnostics;
+use teeter_scenario::diagnostic::{Diagnostic, Diagnostics};
 use teeter_scenario::record_alone;
 use teeter_scenario::scene::RecordScene;
 
@@ -38,10 +38,11 @@ pub(crate) fn record(options: &Options) -> Exit {
         console.error(text);
         Exit::BadInput
     };
-    let found = match read(&options.file).map_err(|why| Diagnostics::from(why.about(&name))) {
-        Ok(bytes) => record_alone(&name, &bytes, &options.keys),
-        Err(found) => Err(found),
-    };
+    let unreadable =
+        |why: String| Diagnostics::from(Diagnostic::error(&name, format!("the record can't be read: {why}")));
+    let found = teeter_run::read_regular(&options.file, teeter_record::LARGEST_FILE)
+        .map_err(unreadable)
+        .and_then(|bytes| record_alone(&name, &bytes, &options.keys));
     let scene = match found {
         Ok(scene) => scene,
         Err(found) => return refused(&Presenter::new("").all(&found)),
@@ -67,28 +68,6 @@ pub(crate) fn record(options: &Options) -> Exit {
             Exit::Failed
         }
     }
-}
-
-/// Why a file can't be read.
-struct Unreadable(String);
-
-impl Unreadable {
-    fn about(self, name: &str) -> teeter_scenario::diagnostic::Diagnostic {
-        teeter_scenario::diagnostic::Diagnostic::error(name, self.0)
-    }
-}
-
-/// The file: of one that is too large, only enough for the reader to refuse it.
-fn read(path: &Path) -> Result<Vec<u8>, Unreadable> {
-    use std::io::Read;
-    let unreadable = |error: std::io::Error| Unreadable(format!("the record can't be read: {error}"));
-    if path.is_dir() {
-        return Err(Unreadable("is a folder, not a record".to_owned()));
-    }
-    let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(unreadable)?;
-    file.take(teeter_record::LARGEST_FILE as u64 + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    Ok(bytes)
 }
 
 /// What a record holds, as used.

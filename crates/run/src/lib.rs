@@ -70,7 +70,7 @@ pub use hooks::{Hooks, PROGRESS_STEPS, Progress};
 pub use job::{ExistingResults, RunJob};
 pub use prepare::Prepared;
 pub use run::{Exported, FinishedRun, StateDump};
-pub use source::SceneSource;
+pub use source::{SceneSource, read_regular};
 pub use start::RunStart;
 pub use teeter_report::{EndedWord, ExportWhen, Summary};
 pub use teeter_scenario::Extent;

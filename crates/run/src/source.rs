@@ -117,22 +117,7 @@ impl SceneSource {
     /// large, only enough bytes to detect that.
     pub fn companions(&self) -> impl FnMut(&str) -> Result<Vec<u8>, String> + use<> {
         let folder = self.folder.clone();
-        move |file| {
-            let path = folder.join(file);
-            // A pipe could block, and a device has no end.
-            match std::fs::metadata(&path) {
-                Ok(found) if found.is_dir() => return Err("is a folder, not a file".to_owned()),
-                Ok(found) if !found.is_file() => {
-                    return Err("is a pipe or a device: give a regular file".to_owned());
-                }
-                _ => {}
-            }
-            read_at_most(&path, LARGEST_RECORD).map_err(|error| match error.kind() {
-                io::ErrorKind::NotFound => "there is no such file".to_owned(),
-                io::ErrorKind::PermissionDenied => "no permission to read it".to_owned(),
-                _ => format!("can't be read: {error}"),
-            })
-        }
+        move |file| read_regular(&folder.join(file), LARGEST_RECORD)
     }
 
     /// The path of a file that the scene names.
@@ -170,6 +155,24 @@ impl SceneSource {
         let down = to[common..].iter().map(|part| part.as_os_str().to_string_lossy().into_owned());
         up.chain(down).collect::<Vec<_>>().join("/")
     }
+}
+
+/// The contents of a regular file, or `most` + 1 bytes of a larger one.
+///
+/// # Errors
+/// Why it can't be read, in words for the user. Pipes and devices are refused: a pipe could block, and
+/// a device has no end.
+pub fn read_regular(path: &Path, most: usize) -> Result<Vec<u8>, String> {
+    match std::fs::metadata(path) {
+        Ok(found) if found.is_dir() => return Err("is a folder, not a file".to_owned()),
+        Ok(found) if !found.is_file() => return Err("is a pipe or a device: give a regular file".to_owned()),
+        _ => {}
+    }
+    read_at_most(path, most).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::PermissionDenied => "no permission to read it".to_owned(),
+        _ => format!("can't be read: {error}"),
+    })
 }
 
 /// The contents of a file, or `most` + 1 bytes of a larger one.
