@@ -54,7 +54,7 @@ pub(super) fn levenberg_marquardt<T>(
                 normal[k][k] += damping * normal[k][k].max(1e-12);
             }
             let right: Vec<f64> = free.iter().map(|&k| -gradient[k]).collect();
-            let Some(step) = matrix::solve(normal, right) else { break };
+            let Some(step) = matrix::solve(&normal, right) else { break };
             let mut at = best.at.clone();
             free.iter().zip(&step).for_each(|(&k, step)| at[k] = (at[k] + step).clamp(0.0, 1.0));
             match of(&at, &best.kept) {

@@ -1,28 +1,12 @@
 //! Small dense matrices.
 
+use nalgebra::{DMatrix, DVector};
+
 /// Solves A x = b by elimination with row pivots; `None` if A is singular.
-pub(super) fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Vec<f64>> {
-    let n = b.len();
-    for i in 0..n {
-        let pivot = (i..n).max_by(|&p, &q| a[p][i].abs().total_cmp(&a[q][i].abs()))?;
-        if !(a[pivot][i].abs() > 0.0) {
-            return None;
-        }
-        a.swap(i, pivot);
-        b.swap(i, pivot);
-        for j in i + 1..n {
-            let factor = a[j][i] / a[i][i];
-            for k in i..n {
-                a[j][k] -= factor * a[i][k];
-            }
-            b[j] -= factor * b[i];
-        }
-    }
-    for i in (0..n).rev() {
-        let known: f64 = (i + 1..n).map(|k| a[i][k] * b[k]).sum();
-        b[i] = (b[i] - known) / a[i][i];
-    }
-    b.iter().all(|x| x.is_finite()).then_some(b)
+pub(super) fn solve(a: &[Vec<f64>], b: Vec<f64>) -> Option<Vec<f64>> {
+    let a = DMatrix::from_fn(b.len(), b.len(), |i, j| a[i][j]);
+    let x = a.lu().solve(&DVector::from_vec(b))?;
+    x.iter().all(|x| x.is_finite()).then(|| x.as_slice().to_vec())
 }
 
 /// What is added to the unit diagonal of a singular matrix: unknowns of which only a combination
@@ -42,11 +26,9 @@ fn inverse_with(a: &[Vec<f64>], ridge: f64) -> Option<Vec<Vec<f64>>> {
         return None;
     }
     let entry = |i: usize, j: usize| a[i][j] / (scale[i] * scale[j]) + if i == j { ridge } else { 0.0 };
-    let scaled: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect();
-    let column = |k: usize| solve(scaled.clone(), (0..n).map(|i| f64::from(u8::from(i == k))).collect());
-    let columns: Option<Vec<Vec<f64>>> = (0..n).map(column).collect();
-    let columns = columns?;
-    Some((0..n).map(|i| (0..n).map(|j| columns[j][i] / (scale[i] * scale[j])).collect()).collect())
+    let inverse =
+        DMatrix::from_fn(n, n, entry).try_inverse().filter(|inverse| inverse.iter().all(|x| x.is_finite()))?;
+    Some((0..n).map(|i| (0..n).map(|j| inverse[(i, j)] / (scale[i] * scale[j])).collect()).collect())
 }
 
 #[cfg(test)]
