@@ -9,15 +9,6 @@ const plots = (() => {
   let onSeek = () => {};
   let onZoom = () => {};
 
-  /** Unit and factor that make the largest of some values a handy number. */
-  function scaled(series, unit) {
-    const largest = Math.max(0, ...series.map(({ y }) => y.reduce((most, x) => Math.max(most, Math.abs(x ?? 0)), 0)));
-    const [prefix, factor] = [["k", 1e-3], ["", 1], ["m", 1e3], ["µ", 1e6], ["n", 1e9]]
-      .find(([, f]) => largest * f >= 0.5) ?? ["", 1];
-    for (const one of series) one.y = one.y.map((x) => x * factor);
-    return prefix + unit;
-  }
-
   function head(panel, parent) {
     const row = htmlElement("div", "head", undefined, parent);
     const title = htmlElement("h3", "", `${panel.title} `, row);
@@ -359,7 +350,7 @@ const plots = (() => {
       paper = wanted;
       redraw();
     },
-    choose, add, scaled, redraw, rowHeight, margin, zoom,
+    choose, add, redraw, rowHeight, margin, zoom,
     zoomBy(factor) {
       const half = ((view[1] - view[0]) * factor) / 2;
       const centre = Math.min(end - half, Math.max(start + half, now));
