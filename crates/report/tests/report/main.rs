@@ -12,3 +12,4 @@ mod plots;
 mod records;
 mod sections;
 mod swings;
+mod table;

@@ -1,6 +1,7 @@
 //! What is plotted, against the tables: what moves, what is probed, what slips, what is prescribed; and what isn't.
 
 use crate::page::{SCENARIOS, assert_well_formed, data, numbers, panel, run, scenario};
+use crate::table::{column, columns_of};
 use std::fs;
 use std::path::Path;
 use teeter_report::{columns, figures};
@@ -8,20 +9,7 @@ use teeter_scenario::simulation::Simulation;
 
 /// A table's columns by name.
 fn table(path: &Path) -> Vec<(String, Vec<f64>)> {
-    let text = fs::read_to_string(path).unwrap();
-    let mut lines = text.lines();
-    let mut columns: Vec<(String, Vec<f64>)> =
-        lines.next().unwrap().split(',').map(|name| (name.to_owned(), Vec::new())).collect();
-    for line in lines {
-        for (cell, (_, values)) in line.split(',').zip(&mut columns) {
-            values.push(cell.parse().unwrap_or(f64::NAN));
-        }
-    }
-    columns
-}
-
-fn column<'c>(columns: &'c [(String, Vec<f64>)], name: &str) -> &'c [f64] {
-    &columns.iter().find(|(known, _)| known == name).unwrap_or_else(|| panic!("no column {name}")).1
+    columns_of(&fs::read_to_string(path).unwrap())
 }
 
 fn scenario_text(name: &str) -> String {

@@ -1,5 +1,6 @@
 //! What beams bear, in the files of a run: exact where statics is, extremes over all steps, and who asks for nothing gets nothing.
 
+use crate::table::{column, columns_of};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -38,23 +39,6 @@ fn run(name: &str, sets: &[(&str, &str)]) -> Run {
     }
 }
 
-/// The columns of a table of numbers, by name.
-fn columns(text: &str) -> Vec<(String, Vec<f64>)> {
-    let mut lines = text.lines();
-    let mut columns: Vec<(String, Vec<f64>)> =
-        lines.next().unwrap().split(',').map(|name| (name.to_owned(), Vec::new())).collect();
-    for line in lines {
-        for (cell, (_, values)) in line.split(',').zip(&mut columns) {
-            values.push(cell.parse().unwrap_or(f64::NAN));
-        }
-    }
-    columns
-}
-
-fn column<'c>(columns: &'c [(String, Vec<f64>)], name: &str) -> &'c [f64] {
-    &columns.iter().find(|(known, _)| known == name).unwrap_or_else(|| panic!("no column {name}")).1
-}
-
 const ASKED: [(&str, &str); 6] = [
     ("output.every", "\"100 us\""),
     ("beam.table.probes", "[\"9 cm\", \"18 cm\"]"),
@@ -67,7 +51,7 @@ const ASKED: [(&str, &str); 6] = [
 #[test]
 fn a_static_start_is_written_as_statics_has_it() {
     let run = run("asked", &[&ASKED[..], &[("time.scheme", "moreau-jean")]].concat());
-    let table = columns(&fs::read_to_string(run.folder.join("trajectory.csv")).unwrap());
+    let table = columns_of(&fs::read_to_string(run.folder.join("trajectory.csv")).unwrap());
     let names: Vec<&str> =
         table.iter().skip_while(|(name, _)| name != "table.v_mid").map(|(name, _)| name.as_str()).collect();
     assert_eq!(
@@ -108,7 +92,7 @@ fn a_static_start_is_written_as_statics_has_it() {
     assert_eq!(first("table.reaction_couple@0"), 0.0);
 
     // Every step is a row, so the extremes of the columns are those of the envelope at the nodes that are probes, and of the summary.
-    let envelope = columns(run.envelopes.as_ref().unwrap());
+    let envelope = columns_of(run.envelopes.as_ref().unwrap());
     let node = |x: f64| column(&envelope, "x").iter().position(|node| (node - x).abs() < 1e-12).unwrap();
     let extreme =
         |name: &str, fold: fn(f64, f64) -> f64, start: f64| column(&table, name).iter().copied().fold(start, fold);
@@ -159,10 +143,10 @@ fn a_beam_in_all_its_modes_writes_what_the_elements_write() {
     ];
     let modes = [("beam.table.model", "modes"), ("beam.table.modes", "{ count = 40 }")];
     let (full, reduced) = (run("in-full", &sets), run("in-modes", &[&sets[..], &modes].concat()));
-    let read = |run: &Run| columns(&fs::read_to_string(run.folder.join("trajectory.csv")).unwrap());
+    let read = |run: &Run| columns_of(&fs::read_to_string(run.folder.join("trajectory.csv")).unwrap());
     for (full, reduced) in [
         (read(&full), read(&reduced)),
-        (columns(full.envelopes.as_ref().unwrap()), columns(reduced.envelopes.as_ref().unwrap())),
+        (columns_of(full.envelopes.as_ref().unwrap()), columns_of(reduced.envelopes.as_ref().unwrap())),
     ] {
         assert_eq!(full.len(), reduced.len());
         for ((name, full), (_, reduced)) in full.iter().zip(&reduced).filter(|((name, _), _)| name != "beam") {
