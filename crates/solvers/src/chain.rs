@@ -191,10 +191,6 @@ impl<const D: usize> Chain<D> {
         p: &mut [Vector<D>],
     ) -> Outcome {
         let mut outcome = self.approach(problem, small, pivots, stop, p);
-        let few = p.len() <= SMALL;
-        let goal = if few { REFINED } else { REFINED.max(REFINED_PART * stop.tolerance) };
-        // There a refinement pays only at rest, where the last step's impulses nearly solve the problem.
-        let moves = suits_gradients(problem, stop) && outcome.iterations > FIRST_SWEEPS;
         if is_rough(problem, stop) {
             if outcome.converged() && outcome.iterations <= FIRST_SWEEPS {
                 let further = stop.with_tolerance(AT_REST * stop.tolerance).with_max_iterations(SWEEPS_AT_REST);
@@ -205,6 +201,10 @@ impl<const D: usize> Chain<D> {
             }
             return outcome;
         }
+        let few = p.len() <= SMALL;
+        let goal = if few { REFINED } else { REFINED.max(REFINED_PART * stop.tolerance) };
+        // There a refinement pays only at rest, where the last step's impulses nearly solve the problem.
+        let moves = suits_gradients(problem, stop) && outcome.iterations > FIRST_SWEEPS;
         if outcome.converged() && outcome.residual.global > goal && !moves {
             let work = self.newton.prepare(problem);
             if !few && work.filled > FILL * work.blocks {
