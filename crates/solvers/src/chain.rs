@@ -318,7 +318,11 @@ impl<const D: usize> Chain<D> {
                 progress.add(crossover.solve(problem, &within(progress.left(stop), TRIED), p));
             }
         };
-        cross(p, progress);
+        // The work of a pivot grows with the contacts faster than that of a step of the path, which is all that a
+        // loose tolerance needs: of a wall of 500 bricks two tries took as long as all else of 1000 steps.
+        if !suits_gradients(problem, stop) {
+            cross(p, progress);
+        }
         // All return the best point that they meet, the start among them.
         if !progress.over(stop) {
             progress.add(self.smoothing.solve(problem, &within(progress.left(stop), SHORT_PATH), p));
