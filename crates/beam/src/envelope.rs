@@ -158,7 +158,8 @@ mod tests {
         envelope.take(&beam, &q, &forces);
         assert_eq!(envelope.places.len(), 1);
         let place = envelope.places[0];
-        let left = 0.7 * 10.0 - 0.5 / span;
+        // Moments about the right end: −R L + 10 · 0.7 L + 0.5 = 0.
+        let left = 0.7 * 10.0 + 0.5 / span;
         let close = |found: [f64; 2], wanted: f64| found.iter().all(|x| (x - wanted).abs() < 1e-9);
         assert!(close(place.shear[0], left) && close(place.shear[1], left - 10.0), "{place:?}");
         assert!(close(place.moment[0], left * x) && close(place.moment[1], left * x - 0.5), "{place:?}");

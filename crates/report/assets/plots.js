@@ -14,7 +14,7 @@ const plots = (() => {
     const title = htmlElement("h3", "", `${panel.title} `, row);
     htmlElement("span", "unit", panel.unit ? `(${panel.unit})` : "", title);
     const keys = panel.portrait && panel.series.length === 1 ? [] : panel.series.filter(({ raw }) => !raw);
-    const legend = htmlElement("div", keys.length > 5 ? "legend many" : "legend", undefined, row);
+    const legend = htmlElement("div", keys.length > 5 && keys.every(({ upper }) => !upper) ? "legend many" : "legend", undefined, row);
     for (const series of keys) {
       const key = htmlElement("span", series.label ? "key" : "key bare", undefined, legend);
       const swatch = svgElement("svg", { viewBox: "0 0 18 8", "aria-hidden": "true" }, key);

@@ -23,7 +23,7 @@ impl BuildError {
     /// let error = Simulation::new(&resolved.scene).unwrap_err();
     /// let found = error.diagnostic(&resolved.document);
     /// assert_eq!((found.path.as_str(), found.position), ("block.cube.position", Some((12, 12))));
-    /// assert!(found.rule.contains("1.0e-1 m below the surface of `ground`"));
+    /// assert!(found.rule.contains("100 mm below the surface of `ground`"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]

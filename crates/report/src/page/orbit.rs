@@ -29,7 +29,14 @@ pub(crate) struct Orbit {
 
 impl Default for Orbit {
     fn default() -> Self {
-        Self { points: Vec::new(), last: None, rates: [ANY; 2], extents: [0.0; 2], tolerance: TOLERANCE }
+        // All at once: memory doesn't grow with the run.
+        Self {
+            points: Vec::with_capacity(POINTS + 1),
+            last: None,
+            rates: [ANY; 2],
+            extents: [0.0; 2],
+            tolerance: TOLERANCE,
+        }
     }
 }
 

@@ -394,7 +394,8 @@ impl Observer<2> for PageRecorder {
         self.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
         self.kept.curves = Curves::new(self.bucket_capacity, state.t, self.row.clone(), self.scenery.points);
         let drawn = if self.scenery.is_crowded() { 0 } else { self.scenery.blocks.len() };
-        self.kept.orbits = vec![Orbit::default(); BLOCK_COORDINATES * drawn];
+        // Not clones of one, which would lack its capacity.
+        self.kept.orbits = (0..BLOCK_COORDINATES * drawn).map(|_| Orbit::default()).collect();
         self.take_orbits(state.t);
         Ok(())
     }
