@@ -1,5 +1,5 @@
 // Opens the pages of runs and studies in headless Chromium and checks what a reader would see: no error, no request to anywhere, the
-// blocks where trajectory.csv says and inside the picture, what was recorded in a plot, the verdict and the numbers of summary.json, no
+// blocks where trajectory.csv says and inside the picture, what was recorded in a plot and no plot of mere rounding, the verdict and the numbers of summary.json, no
 // text over another, no sideways scrolling; and what one would meet who uses the keyboard, or hears the page.
 //
 //   node check.mjs CHROMIUM RUN_DIR...
@@ -11,6 +11,7 @@ import { chromium } from "playwright-core";
 import { keyboardWalk, playByKeys, plotsWithoutWords, violations } from "./accessible.mjs";
 import { outOfPicture, unplotted, wrongVerdicts } from "./motion.mjs";
 import { overlaps } from "./overlaps.mjs";
+import { plotsDrawn, plotsOfRounding } from "./rounding.mjs";
 
 const [executablePath, ...folders] = process.argv.slice(2);
 /** Widths of the window, px, each in one of the two colour schemes. */
@@ -77,6 +78,8 @@ async function ofRun(page, run, problem, isFirst) {
   const data = JSON.parse(await page.$eval("#data", (element) => element.textContent));
   wrongVerdicts(summary, trajectory, data).forEach(problem);
   (await unplotted(page, trajectory)).forEach(problem);
+  const envelopes = join(run, "envelopes.csv");
+  plotsOfRounding(await plotsDrawn(page), data, summary, existsSync(envelopes) ? table(envelopes) : []).forEach(problem);
   const [size, bodies] = [statSync(join(run, "report.html")).size, data.scenery.blocks.length + data.scenery.beams.length];
   const limit = bodies <= 10 && summary.steps <= 2e5 ? largest.few : largest.any;
   if (size > limit) problem(`has ${size} bytes, more than ${limit}`);

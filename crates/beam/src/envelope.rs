@@ -20,13 +20,35 @@ pub struct Envelope {
     pub shear_ends: Vec<[[f64; 2]; 2]>,
     /// By nodes: largest normal stress, Pa; NaN where the section doesn't know its modulus.
     pub stress: Vec<f64>,
+    /// Between the nodes, where something acts whose place is known, from left to right.
+    pub places: Vec<EnvelopePlace>,
+}
+
+/// The extremes at a place between the nodes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EnvelopePlace {
+    /// Where, m from the left end.
+    pub x: f64,
+    /// Least and largest deflection, m.
+    pub deflection: [f64; 2],
+    /// Least and largest bending moment just left of it and just right of it, N m.
+    pub moment: [[f64; 2]; 2],
+    /// Alike: least and largest transverse force, N.
+    pub shear: [[f64; 2]; 2],
+    /// Largest normal stress, Pa; NaN where the section doesn't know its modulus.
+    pub stress: f64,
+}
+
+const NONE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+fn widen(range: &mut [f64; 2], value: f64) {
+    *range = [range[0].min(value), range[1].max(value)];
 }
 
 impl Envelope {
     /// Of nothing yet.
     #[must_use]
     pub fn new(beam: &Beam) -> Self {
-        const NONE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
         let by_nodes = vec![NONE; beam.nodes()];
         let by_ends = vec![[NONE; 2]; beam.elements()];
         Self {
@@ -36,7 +58,22 @@ impl Envelope {
             moment_ends: by_ends.clone(),
             shear_ends: by_ends,
             stress: vec![f64::NAN; beam.nodes()],
+            places: Vec::new(),
         }
+    }
+
+    /// With these places (m from the left end) between the nodes, such as those of loads that stay where they are: there the
+    /// forces jump, which straight lines from node to node would blur. What is at a node, or beyond the ends, is left out.
+    #[must_use]
+    pub fn with_places(mut self, beam: &Beam, places: impl IntoIterator<Item = f64>) -> Self {
+        let span = beam.spec().span;
+        let mut places: Vec<f64> = places.into_iter().filter(|x| (0.0..=span).contains(x)).collect();
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        places.retain(|x| beam.mesh.node(*x).is_none());
+        let none = |x| EnvelopePlace { x, deflection: NONE, moment: [NONE; 2], shear: [NONE; 2], stress: f64::NAN };
+        self.places = places.into_iter().map(none).collect();
+        self
     }
 
     /// Takes a state in.
@@ -44,7 +81,6 @@ impl Envelope {
     /// # Panics
     /// If `q` has not [`Beam::dofs`] entries, or `forces` are those of a beam with fewer elements.
     pub fn take(&mut self, beam: &Beam, q: &[f64], forces: &SectionForces) {
-        let widen = |range: &mut [f64; 2], value: f64| *range = [range[0].min(value), range[1].max(value)];
         for (range, [w, _]) in self.deflection.iter_mut().zip(beam.bend(q)) {
             widen(range, *w);
         }
@@ -57,6 +93,18 @@ impl Envelope {
                 widen(&mut self.shear_ends[e][side], shear);
                 if let Some(stress) = forces.stress(beam, middle, moment) {
                     self.stress[e + side] = self.stress[e + side].max(stress);
+                }
+            }
+        }
+        for place in &mut self.places {
+            // Places lie within the span.
+            let Ok(sides) = forces.sides(beam, place.x) else { continue };
+            widen(&mut place.deflection, beam.shape_clamped(place.x).deflection(q).w);
+            for (side, SectionForce { moment, shear }) in sides.into_iter().enumerate() {
+                widen(&mut place.moment[side], moment);
+                widen(&mut place.shear[side], shear);
+                if let Some(stress) = forces.stress(beam, place.x, moment) {
+                    place.stress = place.stress.max(stress);
                 }
             }
         }
@@ -92,6 +140,30 @@ mod tests {
         assert!(close(envelope.shear_ends[0][1][1], 6.0) && close(envelope.shear_ends[1][0][0], -2.0));
         assert!(close(envelope.moment_ends[1][1][1], envelope.moment_ends[2][0][1]));
         assert!((envelope.stress[2] / (6.0 * 2.0 / 1e-3) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn at_a_load_between_nodes_the_shear_jumps_by_it() {
+        let beam = Beam::new(spec(4, [Pinned; 2])).unwrap();
+        let span = beam.spec().span;
+        let x = 0.3 * span;
+        let load = SpanLoad::Point { x, force: -10.0, couple: 0.5 };
+        let mut q = vec![0.0; beam.dofs()];
+        beam.add_point_load(x, -10.0, &mut q).unwrap();
+        beam.add_point_couple(x, 0.5, &mut q).unwrap();
+        beam.solve_static(&mut q).unwrap();
+        let forces = beam.section_forces(&Actions::at(&q).with_loads(&[load])).unwrap();
+        // One of the places is a node, another off the beam.
+        let mut envelope = Envelope::new(&beam).with_places(&beam, [0.5 * span, x, -1.0]);
+        envelope.take(&beam, &q, &forces);
+        assert_eq!(envelope.places.len(), 1);
+        let place = envelope.places[0];
+        // Moments about the right end: −R L + 10 · 0.7 L + 0.5 = 0.
+        let left = 0.7 * 10.0 + 0.5 / span;
+        let close = |found: [f64; 2], wanted: f64| found.iter().all(|x| (x - wanted).abs() < 1e-9);
+        assert!(close(place.shear[0], left) && close(place.shear[1], left - 10.0), "{place:?}");
+        assert!(close(place.moment[0], left * x) && close(place.moment[1], left * x - 0.5), "{place:?}");
+        assert_eq!(place.shear[1][0], forces.at(&beam, x).unwrap().shear);
     }
 
     #[test]

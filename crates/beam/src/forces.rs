@@ -336,6 +336,15 @@ impl SectionForces {
     /// # Errors
     /// [`BeamError::OutsideSpan`].
     pub fn at(&self, beam: &Beam, x: f64) -> Result<SectionForce, BeamError> {
+        Ok(self.sides(beam, x)?[1])
+    }
+
+    /// The section forces just left and just right of x, which differ where a load inside an element makes them jump; at a node
+    /// both are those of [`SectionForces::at`], and [`SectionForces::ends`] tells them apart.
+    ///
+    /// # Errors
+    /// [`BeamError::OutsideSpan`].
+    pub fn sides(&self, beam: &Beam, x: f64) -> Result<[SectionForce; 2], BeamError> {
         let span = beam.spec.span;
         if !(0.0..=span).contains(&x) {
             return Err(BeamError::OutsideSpan { x, span });
@@ -348,7 +357,11 @@ impl SectionForces {
         let [v0, ..] = self.ends[e];
         let points = self.passed(e, xi).map(|(_, _, force, _)| force).sum::<f64>();
         let shear = v0 + self.spread(beam, e) * xi + points + self.carried(beam, e, xi)[0];
-        Ok(SectionForce { moment: self.moment_in(beam, e, xi), shear })
+        let right = SectionForce { moment: self.moment_in(beam, e, xi), shear };
+        // A couple lowers the moment to its right.
+        let here = self.inside.iter().filter(|(element, at, ..)| *element == e && *at == xi);
+        let [force, couple] = here.fold([0.0; 2], |sum, (_, _, force, couple)| [sum[0] + force, sum[1] + couple]);
+        Ok([SectionForce { moment: right.moment + couple, shear: right.shear - force }, right])
     }
 
     /// What uniform loads on a part of an element have added up to ξ: to V, and to M.

@@ -193,7 +193,7 @@ pub use basis::ModalBasis;
 pub use beam::{Beam, Dof};
 pub use digits::Digits;
 pub use eigen::Modes;
-pub use envelope::Envelope;
+pub use envelope::{Envelope, EnvelopePlace};
 pub use error::{BeamError, CholeskyError, ModalError, ModesError, StaticError};
 pub use extremes::DeflectionExtremes;
 pub use factor::{Backend, Factor, MatrixWeights};

@@ -10,6 +10,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use teeter_scenario::output_size::{accuracy_of_seconds, has_many_contacts, step_of_pile, writing_seconds};
 use teeter_scenario::preview::{BeamPreview, BlockPreview, FEW_DIGITS, Preview, ShapesPreview};
+use teeter_scenario::readable::{shortest, with_unit};
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::scene::{GroundScene, Scene, SchemeName};
 use teeter_scenario::simulation::Simulation;
@@ -174,9 +175,9 @@ fn beam(beam: &BeamPreview) -> String {
         let own = if beam.frequency_is_exact { "the continuous beam" } else { "a mesh eight times as fine" };
         let _ = write!(
             text,
-            "\n    first frequency {} Hz (period {} s){}",
+            "\n    first frequency {} Hz (period {}){}",
             digits(frequency.model),
-            digits(1.0 / frequency.model),
+            with_unit(1.0 / frequency.model, "s"),
             match frequency.exact_if_different() {
                 Some(beam) =>
                     format!(" of the model, {} the {} Hz of {own}", beside(frequency.model, beam), digits(beam)),
@@ -206,14 +207,14 @@ fn beam(beam: &BeamPreview) -> String {
     if let Some(sag) = beam.sag.filter(|sag| sag.larger() > 0.0) {
         let _ = write!(
             text,
-            "\n    sags by {} m under {}the resting blocks, {}",
-            digits(sag.model),
+            "\n    sags by {} under {}the resting blocks, {}",
+            with_unit(sag.model, "m"),
             if beam.self_weight { "its own weight and " } else { "" },
             wording::part_of(sag.model, beam.span)
         );
         if let Some(own) = sag.exact_if_different() {
             let part = wording::part_of(own, beam.span);
-            let _ = write!(text, "; {} the {} m ({part}) of a finer mesh", beside(sag.model, own), digits(own));
+            let _ = write!(text, "; {} the {} ({part}) of a finer mesh", beside(sag.model, own), with_unit(own, "m"));
         }
     }
     if let Some(moment) = beam.yield_moment {
@@ -266,8 +267,8 @@ fn model(scene: &Scene, preview: &Preview) -> Vec<String> {
     // The default is not mentioned.
     if scene.time.gap_tolerance != 1e-12 {
         lines.push(format!(
-            "a gap below {:e} m counts as closed (usually 1e-12 m; derived from the largest block side unless given)",
-            scene.time.gap_tolerance
+            "a gap below {} counts as closed (usually 1 pm; derived from the largest block side unless given)",
+            with_unit(scene.time.gap_tolerance, "m")
         ));
     }
     lines
@@ -370,9 +371,5 @@ fn degrees(radians: f64) -> String {
 
 /// A number with four digits.
 fn digits(x: f64) -> String {
-    if x == 0.0 {
-        return "0".to_owned();
-    }
-    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
-    if (1e-4..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
+    shortest(x, 4)
 }

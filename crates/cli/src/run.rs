@@ -8,7 +8,7 @@ use crate::render::{Presenter, refusal};
 use crate::scene;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use teeter_report::{ENERGY_MADE, ENERGY_TAKEN, FILES, HORIZON, Results, UNLOCATED, with_unit};
+use teeter_report::{ENERGY_MADE, ENERGY_TAKEN, FILES, HORIZON, Results, UNLOCATED, with_digits, with_unit};
 use teeter_run::{
     EndedWord, ExistingResults, ExportWhen, Extent, FinishedRun, Hooks, LoadError, PrepareError, Prepared, RunError,
     RunJob, RunStart, StateDump, Summary,
@@ -301,18 +301,23 @@ fn format_summary(summary: &Summary, folder: &Path, horizon: bool, report: bool)
         summary.us_per_step
     ));
     let count = |n: u64, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
-    text.push_str(&format!(
-        "  {}{}, {}, deepest penetration of a corner {:.1e} m, energy identity to {:.0e}\n",
-        count(summary.impact_count, "impact"),
-        if summary.reclosure_count > 0 {
-            format!(" and {}", count(summary.reclosure_count, "re-closure"))
-        } else {
-            String::new()
-        },
-        count(summary.crossings.len() as u64, "zero crossing"),
-        summary.max_penetration,
-        summary.energy.largest_residual
-    ));
+    let identity = format!("energy identity to {:.0e}", summary.energy.largest_residual);
+    if summary.model.blocks.is_empty() {
+        // Nothing touches or rocks.
+        text.push_str(&format!("  {identity}\n"));
+    } else {
+        text.push_str(&format!(
+            "  {}{}, {}, deepest penetration of a corner {}, {identity}\n",
+            count(summary.impact_count, "impact"),
+            if summary.reclosure_count > 0 {
+                format!(" and {}", count(summary.reclosure_count, "re-closure"))
+            } else {
+                String::new()
+            },
+            count(summary.crossings.len() as u64, "zero crossing"),
+            with_digits(summary.max_penetration, "m", 2),
+        ));
+    }
     if summary.contact.unconverged_steps > 0 {
         text.push_str(&format!("  {} steps not solved to tolerance\n", summary.contact.unconverged_steps));
     }

@@ -111,7 +111,7 @@ fn with_few_elements_the_model_s_numbers_stand_beside_the_beam_s() {
 #[test]
 fn an_unusual_gap_tolerance_is_told() {
     let (_, stdout, _) = check(&[&scenario("free-rocking-on-ground"), "--set", "block.rocker.height=2 m"]);
-    assert!(stdout.contains("a gap below 2e-11 m counts as closed"), "{stdout}");
+    assert!(stdout.contains("a gap below 20 pm counts as closed"), "{stdout}");
 }
 
 #[test]

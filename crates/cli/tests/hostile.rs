@@ -224,3 +224,40 @@ fn so_many_errors_that_reading_ends_are_a_lower_bound() {
     std::fs::write(at.join("scene.toml"), keys).unwrap();
     refused(&at, &["check", "scene.toml"], "and at least 1");
 }
+
+/// The files of a folder, by their paths in it.
+fn files_of(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in std::fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() { folders.push(path) } else { files.push(path.strip_prefix(folder).unwrap().to_owned()) }
+        }
+    }
+    files.sort();
+    files
+}
+
+#[test]
+fn force_leaves_nothing_of_an_earlier_run_but_what_others_put_there() {
+    let at = folder("stale");
+    // It slides, falls and turns on ground that moves: figures of each.
+    let moving = SCENE.replace(
+        "on = 'ground'\nat = '0 m'",
+        "position = ['0 m', '2 m']\nangle = '10 deg'\nvelocity = ['1 m/s', '0 m/s']",
+    );
+    std::fs::write(at.join("moving.toml"), moving).unwrap();
+    done(&at, &["run", "moving.toml", "--out", "out", "--vtk"]);
+    let before = files_of(&at.join("out"));
+    for figure in ["figures/x.svg", "figures/phase_y.svg", "vtk/picture-0000.vtu"] {
+        assert!(before.contains(&figure.into()), "{figure} is not among {before:?}");
+    }
+    std::fs::write(at.join("out/figures/mine.svg"), "mine").unwrap();
+    done(&at, &["run", "scene.toml", "--out", "out", "--force"]);
+    done(&at, &["run", "scene.toml", "--out", "fresh"]);
+    let mut wanted = files_of(&at.join("fresh"));
+    wanted.push("figures/mine.svg".into());
+    wanted.sort();
+    assert_eq!(files_of(&at.join("out")), wanted);
+}

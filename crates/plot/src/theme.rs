@@ -16,8 +16,9 @@ pub enum Theme {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Colour {
-    /// Colour of the series with this number, from the palette of Okabe and Ito without its yellow,
-    /// which is too faint for thin lines on white. The seven colours repeat.
+    /// Colour of the series with this number. Each of the seven has a contrast of 3:1 and more against
+    /// white, which thin lines need, and each two are told apart by those who can't see red, green or
+    /// blue. They repeat.
     Series(usize),
     /// Text and frames.
     Ink,
@@ -52,12 +53,12 @@ impl Colour {
     fn values(self) -> (&'static str, &'static str) {
         match self {
             Self::Series(number) => match number % SERIES_COLOURS {
-                0 => ("#0072B2", "var(--c0, #0072B2)"),
-                1 => ("#D55E00", "var(--c1, #D55E00)"),
-                2 => ("#009E73", "var(--c2, #009E73)"),
-                3 => ("#CC79A7", "var(--c3, #CC79A7)"),
-                4 => ("#E69F00", "var(--c4, #E69F00)"),
-                5 => ("#56B4E9", "var(--c5, #56B4E9)"),
+                0 => ("#0050b0", "var(--c0, #0050b0)"),
+                1 => ("#e05206", "var(--c1, #e05206)"),
+                2 => ("#00a078", "var(--c2, #00a078)"),
+                3 => ("#a8618c", "var(--c3, #a8618c)"),
+                4 => ("#6a3200", "var(--c4, #6a3200)"),
+                5 => ("#3d90e8", "var(--c5, #3d90e8)"),
                 _ => ("#000000", "var(--c6, #000000)"),
             },
             Self::Ink => ("#000", "var(--fg, #000)"),
@@ -67,6 +68,29 @@ impl Colour {
             Self::Grid => ("#ddd", "var(--line, #ddd)"),
             Self::FineGrid => ("#eee", "var(--grid, #eee)"),
             Self::Shade => ("#e6e6e6", "var(--grid, #e6e6e6)"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Relative luminance of a colour as `#rrggbb` (WCAG 2.2).
+    fn luminance(colour: &str) -> f64 {
+        let part = |at: usize| {
+            let x = f64::from(u8::from_str_radix(&colour[at..at + 2], 16).unwrap()) / 255.0;
+            if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * part(1) + 0.7152 * part(3) + 0.0722 * part(5)
+    }
+
+    #[test]
+    fn lines_on_paper_reach_a_contrast_of_3_to_1() {
+        for number in 0..SERIES_COLOURS {
+            let colour = Colour::Series(number).value(Theme::Paper);
+            let contrast = 1.05 / (luminance(colour) + 0.05);
+            assert!(contrast >= 3.0, "{colour} has {contrast}");
         }
     }
 }

@@ -91,7 +91,7 @@ fn written(factor: u32, power: i32) -> String {
 fn raised(factor: u32, power: i32) -> String {
     let times = if factor == 1 { String::new() } else { format!("{factor}·") };
     let exponent = power.to_string().replace('-', "\u{2212}");
-    format!("{times}10<tspan dy=\"-4\" font-size=\"8\">{exponent}</tspan>")
+    format!("{times}10<tspan dy=\"-4\" font-size=\"10\">{exponent}</tspan>")
 }
 
 #[cfg(test)]
@@ -117,7 +117,7 @@ mod tests {
         assert_eq!(ticks.minor.len(), 3 * 8);
         let ticks = Ticks::logarithmic(-12.0, -10.0);
         let exponents: Vec<_> =
-            ticks.major.iter().map(|(_, label)| label.replace("10<tspan dy=\"-4\" font-size=\"8\">", "^")).collect();
+            ticks.major.iter().map(|(_, label)| label.replace("10<tspan dy=\"-4\" font-size=\"10\">", "^")).collect();
         assert_eq!(exponents, ["^−12</tspan>", "^−11</tspan>", "^−10</tspan>"]);
     }
 

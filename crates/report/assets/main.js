@@ -109,7 +109,7 @@
   for (const { id, title, x_label: xLabel, unit, least, guides, series } of data.portraits) {
     plots.add({
       id, title, xLabel, unit, guides, least: least[1], leastX: least[0], portrait: true, height: 300,
-      series: series.map(({ label, index, x, y }) => ({ label, index, x, y, t: forces.borders })),
+      series,
     });
   }
 

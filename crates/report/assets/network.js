@@ -12,7 +12,15 @@ const chains = (() => {
     return sizes[Math.floor(sizes.length / 2)] || 1;
   })();
 
-  const sizes = scenery.blocks.map(({ reach }) => reach).sort((a, b) => a - b);
+  /** How thick a block is: twice the distance from its mass centre to its nearest side, of a disc its diameter. */
+  const thickness = ({ corners, reach }) => {
+    const sides = corners.map(([x, y], k) => {
+      const [u, v] = corners[(k + 1) % corners.length];
+      return Math.abs(x * v - u * y) / Math.hypot(u - x, v - y);
+    }).filter((far) => far > 0);
+    return 2 * (corners.length > 2 && sides.length ? Math.min(...sides) : reach);
+  };
+  const sizes = scenery.blocks.map(thickness).sort((a, b) => a - b);
   const typical = sizes[Math.floor(sizes.length / 2)];
   let shown = { picture: -1, links: [] };
 
@@ -29,7 +37,8 @@ const chains = (() => {
   /** Draws the links of a picture, with the poses of the blocks and where a place (m) is in the picture. */
   function draw(paths, picture, poseOf, place, scale) {
     const lines = paths.map(() => "");
-    const widest = Math.min(9, Math.max(1.5, 0.5 * typical * scale));
+    // A third of a slender block at most, so that the block is seen beside it.
+    const widest = Math.min(9, Math.max(1.2, 0.3 * typical * scale));
     for (const link of linksAt(picture)) {
       const number = Math.min(classes, Math.round((link.force / usual) * classes));
       if (number === 0) continue;

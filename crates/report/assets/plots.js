@@ -13,8 +13,9 @@ const plots = (() => {
     const row = htmlElement("div", "head", undefined, parent);
     const title = htmlElement("h3", "", `${panel.title} `, row);
     htmlElement("span", "unit", panel.unit ? `(${panel.unit})` : "", title);
-    const legend = htmlElement("div", "legend", undefined, row);
-    for (const series of panel.portrait && panel.series.length === 1 ? [] : panel.series.filter(({ raw }) => !raw)) {
+    const keys = panel.portrait && panel.series.length === 1 ? [] : panel.series.filter(({ raw }) => !raw);
+    const legend = htmlElement("div", keys.length > 5 && keys.every(({ upper }) => !upper) ? "legend many" : "legend", undefined, row);
+    for (const series of keys) {
       const key = htmlElement("span", series.label ? "key" : "key bare", undefined, legend);
       const swatch = svgElement("svg", { viewBox: "0 0 18 8", "aria-hidden": "true" }, key);
       if (series.upper) svgElement("path", { d: "M0 0h18v8h-18z", class: "area", style: `fill: ${colour(series.index)}; fill-opacity: ${series.inner ? 0.45 : 0.2}` }, swatch);

@@ -9,6 +9,7 @@ mod checkpoint;
 mod closed;
 mod columns;
 mod contacts;
+mod deflections;
 mod driven;
 mod export;
 mod lock;
@@ -17,7 +18,6 @@ mod meetings;
 mod number;
 mod page;
 mod probe;
-mod readable;
 mod recorder;
 mod resolution;
 mod results;
@@ -38,13 +38,13 @@ pub use checkpoint::{
     program_hash,
 };
 pub use columns::columns;
+pub use deflections::LargestDeflection;
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
 pub use made_energy::ENERGY_MADE;
 pub use page::{
     HalfCycle, Joint, PageRecorder, STYLE, ThrustLine, VTK_SERIES, VtkRecorder, document, escaped, figures,
     half_cycles, record_figures, record_page, render, spectrum_periods, thrust_lines,
 };
-pub use readable::{shortest, with_digits, with_unit};
 pub use recorder::{ImpactRow, Record, Recorder};
 pub use results::{FILES, Reserved, Results, ResultsError};
 pub use run_recorder::{Origin, RunRecorder};
@@ -52,6 +52,7 @@ pub use schedule::Schedule;
 pub use sections::{BeamRecord, LargestStress, ReactionRange, envelopes};
 pub use summary::{EndedWord, RecordSummary, Summary};
 pub use taken_energy::ENERGY_TAKEN;
+pub use teeter_scenario::readable::{shortest, with_digits, with_unit};
 pub use unlocated::UNLOCATED;
 pub use verdict::{BodyVerdict, Fate, Fates, StopReason, Way};
 pub use warnings::{HORIZON, Warning, WarningLog};

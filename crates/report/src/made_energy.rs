@@ -1,6 +1,7 @@
 //! The warning that contacts, or a scheme, made energy, and what to take instead.
 
 use crate::Warning;
+use crate::with_digits;
 use teeter_integrator::{Ledger, State};
 use teeter_scenario::scene::{Scene, SchemeName};
 
@@ -37,15 +38,20 @@ fn by_scheme(ledger: &Ledger) -> f64 {
 fn text_of_scheme(scene: &Scene, ledger: &Ledger) -> String {
     let made = by_scheme(ledger);
     format!(
-        "{} made {made:.2e} J of energy, {} of the scene's energy scale of {:.2e} J: {:.2e} J by projecting places and {:.2e} J by its own rule; \
+        "{} made {} of energy, {} of the scene's energy scale of {}: {} by projecting places and {} by its own rule; \
          the energy of the motion is off by as much; take a shorter step (`time.step`), or `time.scheme = \"{}\"`, which makes none",
         scene.time.scheme.word(),
+        joules(made),
         percent(made / ledger.scale),
-        ledger.scale,
-        ledger.sum.projection.max(0.0),
-        ledger.sum.numerical.max(0.0),
+        joules(ledger.scale),
+        joules(ledger.sum.projection.max(0.0)),
+        joules(ledger.sum.numerical.max(0.0)),
         SchemeName::MoreauJeanClosed.word()
     )
+}
+
+fn joules(energy: f64) -> String {
+    with_digits(energy, "J", 3)
 }
 
 /// What contacts, friction, damping and the scheme took from the bodies, J.
@@ -59,17 +65,17 @@ fn text(scene: &Scene, ledger: &Ledger, lost: f64) -> String {
     let made = ledger.positive_contact_work;
     let steps = if made.steps == 1 { "1 step".to_owned() } else { format!("{} steps", made.steps) };
     let of_lost = if lost > 0.0 {
-        format!("{} of the {lost:.2e} J that were lost", percent(made.sum / lost))
+        format!("{} of the {} that were lost", percent(made.sum / lost), joules(lost))
     } else {
         "nothing was lost".to_owned()
     };
     format!(
-        "contacts made {:.2e} J of energy in {steps}, {:.2e} J in the one that made most: {of_lost}, {} of the scene's energy \
-         scale of {:.2e} J; no contact does that: the energy of the motion is off by as much; {}",
-        made.sum,
-        made.largest,
+        "contacts made {} of energy in {steps}, {} in the one that made most: {of_lost}, {} of the scene's energy \
+         scale of {}; no contact does that: the energy of the motion is off by as much; {}",
+        joules(made.sum),
+        joules(made.largest),
         percent(made.sum / ledger.scale),
-        ledger.scale,
+        joules(ledger.scale),
         remedy(scene)
     )
 }

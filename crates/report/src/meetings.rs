@@ -1,6 +1,7 @@
 //! Warnings of bodies that are inside each other where the model has no contact.
 
 use crate::WarningLog;
+use crate::with_digits;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use teeter_integrator::State;
@@ -57,31 +58,32 @@ fn code(meeting: Meeting) -> &'static str {
 }
 
 fn text(meeting: Meeting, layout: &Layout, t: f64, depth: f64) -> String {
+    let (depth, t) = (with_digits(depth, "m", 2), with_digits(t, "s", 7));
     let block = |k: usize| &layout.blocks[k].name;
     let beam = |k: usize| &layout.beams[k].name;
     match meeting {
         Meeting::Blocks(a, b) => format!(
-            "`{}` and `{}` overlap by {depth:.1e} m at t = {t} s: no contact joins the two, so they pass through each other",
+            "`{}` and `{}` overlap by {depth} at t = {t}: no contact joins the two, so they pass through each other",
             block(a),
             block(b)
         ),
         Meeting::Ground(k) => format!(
-            "`{}` is {depth:.1e} m below the ground at t = {t} s: no contact joins the two, so it passes through",
+            "`{}` is {depth} below the ground at t = {t}: no contact joins the two, so it passes through",
             block(k)
         ),
         Meeting::Beam(k, of) => format!(
-            "`{}` is inside `{}` by {depth:.1e} m at t = {t} s: no contact joins the two, so they pass through each other",
+            "`{}` is inside `{}` by {depth} at t = {t}: no contact joins the two, so they pass through each other",
             beam(of),
             block(k)
         ),
         Meeting::BetweenCorners(k, of) => format!(
-            "`{}` is {depth:.1e} m inside `{}` between its corners at t = {t} s: by their contact only corners of the block touch the beam, so nothing \
+            "`{}` is {depth} inside `{}` between its corners at t = {t}: by their contact only corners of the block touch the beam, so nothing \
              holds it there, and max_penetration doesn't count it",
             beam(of),
             block(k)
         ),
         Meeting::PastEnd(k, of) => format!(
-            "the end of `{}` is {depth:.1e} m inside `{}` at t = {t} s: a corner past the end has no contact with the beam, and one that \
+            "the end of `{}` is {depth} inside `{}` at t = {t}: a corner past the end has no contact with the beam, and one that \
              comes back below its surface is thrown up through it",
             beam(of),
             block(k)

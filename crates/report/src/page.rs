@@ -16,6 +16,7 @@ mod frames;
 mod html;
 mod means;
 mod network;
+mod orbit;
 mod outline;
 mod packed;
 mod panels;
@@ -34,6 +35,7 @@ pub(crate) use recorder::Kept;
 pub use recorder::PageRecorder;
 pub use rocking::{HalfCycle, half_cycles};
 pub use teeter_plot::escaped;
+pub(crate) use vtk::is_vtk_picture;
 pub use vtk::{VTK_SERIES, VtkRecorder};
 
 /// A number with so many significant digits: what the page shows needs no more, and a shorter page loads faster.

@@ -3,6 +3,7 @@
 use crate::bounces::Bounces;
 use crate::closed::Closed;
 use crate::contacts::{self, AtEnd, Impulses, push_names};
+use crate::deflections::{LargestDeflection, Places};
 use crate::driven::Driven;
 use crate::meetings::Met;
 use crate::number::{push, push_next};
@@ -60,6 +61,9 @@ pub struct Record {
     pub rocking: Vec<RockingMonitor>,
     /// What beams bore, of those that are asked.
     pub beams: Vec<BeamRecord>,
+    /// The largest deflections, of a scene without blocks.
+    #[serde(default)]
+    pub deflections: Vec<LargestDeflection>,
     /// What became of the blocks.
     pub fates: Fates,
     /// What the run warned of.
@@ -119,6 +123,7 @@ pub struct Recorder<'a> {
     sections: Sections,
     driven: Vec<Driven>,
     bodies: Bodies,
+    places: Places,
     watch: Watch,
     fate_watch: verdict::Watch,
     /// The shorter side of the block whose that is the shortest, m.
@@ -240,6 +245,7 @@ impl<'a> Recorder<'a> {
             sections,
             driven: Driven::of(scene, layout),
             bodies: Bodies::of(scene),
+            places: Places::of(scene, layout),
             watch: Watch::of(scene, layout),
             fate_watch: verdict::Watch::of(scene, layout).since(&kept.record.fates),
             shortest_side: layout.blocks.iter().map(|place| place.side).fold(f64::INFINITY, f64::min),
@@ -412,6 +418,7 @@ impl Observer<2> for Recorder<'_> {
         self.kept.resolution.start(self.layout, state);
         self.kept.swings.start(&self.watch);
         self.kept.record.fates.start(&mut self.fate_watch, self.layout, state);
+        self.places.look(self.layout, state, &mut self.kept.record.deflections);
         let (record, values) = (&mut self.kept.record, &mut self.kept.section_values);
         self.sections.start(self.layout, state, &mut record.beams, values);
         Ok(self.write_row(state)?)
@@ -439,6 +446,7 @@ impl Observer<2> for Recorder<'_> {
         for (block, monitor) in self.kept.record.rocking.iter_mut().enumerate() {
             monitor.enter(state.t, self.layout.tilt(block, &state.q));
         }
+        self.places.look(self.layout, state, &mut self.kept.record.deflections);
         self.kept.record.fates.observe(&self.fate_watch, self.layout, step.t_start, state);
         if self.kept.schedule.takes(state.step, state.t) {
             self.write_rows(model, state)?;

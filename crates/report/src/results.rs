@@ -2,6 +2,7 @@
 
 use crate::checkpoint::CHECKPOINT;
 use crate::lock::FolderLock;
+use crate::page::{VTK_SERIES, is_vtk_picture};
 use crate::table::Table;
 use std::fs;
 use std::io::{self, Write};
@@ -9,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// The files that a run may write; which of the figures, depends on its scene. They are removed in this order: no summary
 /// outlives a table, and while there is anything, `scene.toml` says of what.
-pub const FILES: [&str; 21] = [
+pub const FILES: [&str; 39] = [
     CHECKPOINT,
     "summary.json",
     "trajectory.csv",
@@ -21,15 +22,33 @@ pub const FILES: [&str; 21] = [
     "report.html",
     "figures/phi.svg",
     "figures/omega.svg",
+    "figures/x.svg",
+    "figures/vx.svg",
+    "figures/y.svg",
+    "figures/vy.svg",
+    "figures/displacement.svg",
     "figures/w_mid.svg",
+    "figures/shapes.svg",
+    "figures/ground.svg",
+    "figures/ground_v.svg",
+    "figures/ground_a.svg",
+    "figures/ground_phi.svg",
+    "figures/ground_v_phi.svg",
+    "figures/ground_a_phi.svg",
+    "figures/contact_forces.svg",
+    "figures/slip.svg",
     "figures/section_forces.svg",
     "figures/envelopes.svg",
-    "figures/contact_forces.svg",
     "figures/energy.svg",
     "figures/phase.svg",
+    "figures/phase_x.svg",
+    "figures/phase_y.svg",
     "figures/records.svg",
     "figures/spectra.svg",
-    "vtk/scene.pvd",
+    "figures/force_chains.svg",
+    "figures/thrust_line.svg",
+    "figures/eccentricity.svg",
+    VTK_SERIES,
     "scene.toml",
 ];
 
@@ -149,7 +168,10 @@ impl Results {
         if let Some((_, command)) = mark {
             return Err(ResultsError::OfAnother { folder: folder.to_owned(), command });
         }
-        let old: Vec<PathBuf> = files.iter().map(|file| folder.join(file)).filter(|path| is_there(path)).collect();
+        let pictures = if files.contains(&VTK_SERIES) { pictures_beside(&folder.join(VTK_SERIES)) } else { Vec::new() };
+        let named = files.iter().map(|file| folder.join(file)).filter(|path| is_there(path));
+        // First of all, as the series that lists them is told of by its name.
+        let old: Vec<PathBuf> = pictures.into_iter().chain(named).collect();
         if !old.is_empty() && !force {
             let resumable = old.contains(&folder.join(CHECKPOINT));
             let error = if resumable { ResultsError::Resumable } else { ResultsError::Exists };
@@ -339,6 +361,16 @@ fn is_there(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok()
 }
 
+/// The numbered pictures of a series, by their names: of how many, no list of files can know.
+fn pictures_beside(series: &Path) -> Vec<PathBuf> {
+    let entries = series.parent().and_then(|folder| fs::read_dir(folder).ok());
+    let names = entries.into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut pictures: Vec<PathBuf> =
+        names.filter(|path| path.file_name().and_then(|name| name.to_str()).is_some_and(is_vtk_picture)).collect();
+    pictures.sort();
+    pictures
+}
+
 fn remove_if_there(path: &Path) -> Result<(), ResultsError> {
     match fs::remove_file(path) {
         Err(source) if source.kind() != io::ErrorKind::NotFound => {
@@ -386,4 +418,30 @@ pub(crate) fn real_place(path: &Path) -> Option<PathBuf> {
     let name = path.file_name()?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     Some(folder.canonicalize().ok()?.join(name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_run_wrote_is_replaced_and_nothing_else() {
+        let folder = std::env::temp_dir().join(format!("teeter-replaced-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        for inner in ["figures", "vtk"] {
+            fs::create_dir_all(folder.join(inner)).unwrap();
+        }
+        let ours = ["summary.json", "figures/phase_x.svg", "vtk/picture-0000.vtu", "vtk/picture-12345.vtu", VTK_SERIES];
+        let foreign =
+            ["figures/mine.svg", "notes.txt", "vtk/picture-1.vtu", "vtk/picture-000a.vtu", "vtk/my-picture-0001.vtu"];
+        for file in ours.iter().chain(&foreign) {
+            fs::write(folder.join(file), "x").unwrap();
+        }
+        assert!(matches!(Results::create(&folder, false), Err(ResultsError::Exists(_))));
+        drop(Results::create(&folder, true).unwrap());
+        let left: Vec<_> = ours.iter().filter(|file| is_there(&folder.join(file))).collect();
+        let gone: Vec<_> = foreign.iter().filter(|file| !is_there(&folder.join(file))).collect();
+        assert!(left.is_empty() && gone.is_empty(), "left {left:?}, gone {gone:?}");
+        fs::remove_dir_all(&folder).unwrap();
+    }
 }

@@ -3,11 +3,12 @@
 
 use crate::WarningLog;
 use crate::number::{push, push_next};
+use crate::{with_digits, with_unit};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use teeter_beam::{Actions, Beam, Envelope, SectionForces};
 use teeter_integrator::{BeamForces, State, StepReport};
-use teeter_scenario::scene::{BeamQuantity, BeamScene, Scene};
+use teeter_scenario::scene::{BeamQuantity, BeamScene, LoadKind, Scene};
 use teeter_scenario::simulation::{BeamPlace, Layout};
 
 /// What a column of a beam holds.
@@ -79,6 +80,16 @@ fn as_given(beam: &Beam, x: f64) -> f64 {
     given.into_iter().find(|place| (place - x).abs() <= 1e-9 * span).unwrap_or(x)
 }
 
+/// Where loads act that stay in their places, m from the left end of the beam.
+fn fixed_loads(scene: &Scene, beam: &str) -> Vec<f64> {
+    let own = scene.loads.iter().filter(|load| scene.beams[load.beam].name == beam);
+    let fixed = own.filter_map(|load| match load.kind {
+        LoadKind::Point { at, .. } => Some(at),
+        _ => None,
+    });
+    fixed.collect()
+}
+
 /// The largest normal stress of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LargestStress {
@@ -120,7 +131,7 @@ pub struct BeamRecord {
 /// The beam's layers know no files: an envelope in a checkpoint.
 mod kept_envelope {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
-    use teeter_beam::Envelope;
+    use teeter_beam::{Envelope, EnvelopePlace};
 
     #[derive(Serialize, Deserialize)]
     struct Kept {
@@ -130,6 +141,16 @@ mod kept_envelope {
         moment_ends: Vec<[[f64; 2]; 2]>,
         shear_ends: Vec<[[f64; 2]; 2]>,
         stress: Vec<f64>,
+        places: Vec<KeptPlace>,
+    }
+
+    #[derive(Serialize, Deserialize)]
+    struct KeptPlace {
+        x: f64,
+        deflection: [f64; 2],
+        moment: [[f64; 2]; 2],
+        shear: [[f64; 2]; 2],
+        stress: f64,
     }
 
     pub(super) fn serialize<S: Serializer>(envelope: &Option<Envelope>, to: S) -> Result<S::Ok, S::Error> {
@@ -140,6 +161,7 @@ mod kept_envelope {
             moment_ends: envelope.moment_ends,
             shear_ends: envelope.shear_ends,
             stress: envelope.stress,
+            places: envelope.places.into_iter().map(kept_place).collect(),
         });
         kept.serialize(to)
     }
@@ -153,7 +175,18 @@ mod kept_envelope {
             moment_ends: kept.moment_ends,
             shear_ends: kept.shear_ends,
             stress: kept.stress,
+            places: kept.places.into_iter().map(place).collect(),
         }))
+    }
+
+    fn kept_place(of: EnvelopePlace) -> KeptPlace {
+        let EnvelopePlace { x, deflection, moment, shear, stress } = of;
+        KeptPlace { x, deflection, moment, shear, stress }
+    }
+
+    fn place(of: KeptPlace) -> EnvelopePlace {
+        let KeptPlace { x, deflection, moment, shear, stress } = of;
+        EnvelopePlace { x, deflection, moment, shear, stress }
     }
 }
 
@@ -202,7 +235,10 @@ impl Sections {
             beam: place.name.clone(),
             largest: None,
             reactions: Vec::new(),
-            envelope: of.output.envelope.then(|| Envelope::new(&place.beam)),
+            envelope: of
+                .output
+                .envelope
+                .then(|| Envelope::new(&place.beam).with_places(&place.beam, fixed_loads(scene, &place.name))),
         };
         let values = self.watched.iter().map(|watched| watched.columns.len()).sum();
         (asked.map(record).collect(), vec![f64::NAN; values])
@@ -290,11 +326,13 @@ impl Sections {
             {
                 let text = warnings.enter("yield", Some(t), || {
                     format!(
-                        "the stress in `{}` passes its yield strength in the step to t = {t} s: {:.4} MPa of {:.4} MPa at x = {x:.4} m; \
+                        "the stress in `{}` passes its yield strength in the step to t = {}: {} of {} at x = {}; \
                          the model stays elastic",
                         record.beam,
-                        1e-6 * stress,
-                        1e-6 * strength
+                        with_digits(t, "s", 7),
+                        with_unit(stress, "Pa"),
+                        with_unit(strength, "Pa"),
+                        with_unit(x, "m")
                     )
                 });
                 told = told.or(text);
@@ -354,7 +392,36 @@ pub(crate) const ENVELOPES_HEADER: &str = "beam,x,w_min,w_max,moment_min,moment_
     moment_left_min,moment_left_max,moment_right_min,moment_right_max,\
     shear_left_min,shear_left_max,shear_right_min,shear_right_max\n";
 
-/// The text of `envelopes.csv`: the extremes over all steps by nodes, of the beams that ask for it; `None` where none does.
+/// A row of `envelopes.csv`: extremes at a place, and of moment and transverse force just left and just right of it.
+struct EnvelopeRow {
+    x: f64,
+    ranges: [[f64; 2]; 3],
+    stress: f64,
+    sides: [[Option<[f64; 2]>; 2]; 2],
+}
+
+impl EnvelopeRow {
+    fn push(&self, beam: &str, text: &mut String) {
+        text.push_str(beam);
+        text.push(',');
+        push(text, self.x);
+        self.ranges.iter().flatten().for_each(|value| push_next(text, *value));
+        if self.stress.is_nan() {
+            text.push(',');
+        } else {
+            push_next(text, self.stress);
+        }
+        for side in self.sides.iter().flatten() {
+            match side {
+                Some(range) => range.iter().for_each(|value| push_next(text, *value)),
+                None => text.push_str(",,"),
+            }
+        }
+        text.push('\n');
+    }
+}
+
+/// The text of `envelopes.csv`: the extremes over all steps by nodes and fixed loads between them, of the beams that ask for it; `None` where none does.
 #[must_use]
 pub fn envelopes(layout: &Layout, records: &[BeamRecord]) -> Option<String> {
     let mut text = ENVELOPES_HEADER.to_owned();
@@ -362,30 +429,26 @@ pub fn envelopes(layout: &Layout, records: &[BeamRecord]) -> Option<String> {
     for record in records {
         let place = layout.beams.iter().find(|place| place.name == record.beam);
         let (Some(place), Some(envelope)) = (place, &record.envelope) else { continue };
-        for (node, x) in place.beam.node_positions().iter().enumerate() {
-            text.push_str(&record.beam);
-            text.push(',');
-            push(&mut text, *x);
-            for range in [envelope.deflection[node], envelope.moment[node], envelope.shear[node]] {
-                range.into_iter().for_each(|value| push_next(&mut text, value));
-            }
-            if envelope.stress[node].is_nan() {
-                text.push(',');
-            } else {
-                push_next(&mut text, envelope.stress[node]);
-            }
-            for ends in [&envelope.moment_ends, &envelope.shear_ends] {
-                // Just left of the node, in the element that ends there, and just right of it.
-                let sides = [node.checked_sub(1).and_then(|e| ends.get(e)).map(|e| e[1]), ends.get(node).map(|e| e[0])];
-                for side in sides {
-                    match side {
-                        Some(range) => range.into_iter().for_each(|value| push_next(&mut text, value)),
-                        None => text.push_str(",,"),
-                    }
-                }
-            }
-            text.push('\n');
-        }
+        let ends = |ends: &[[[f64; 2]; 2]], node: usize| {
+            // Just left of the node, in the element that ends there, and just right of it.
+            [node.checked_sub(1).and_then(|e| ends.get(e)).map(|e| e[1]), ends.get(node).map(|e| e[0])]
+        };
+        let at_nodes = place.beam.node_positions().iter().enumerate().map(|(node, x)| EnvelopeRow {
+            x: *x,
+            ranges: [envelope.deflection[node], envelope.moment[node], envelope.shear[node]],
+            stress: envelope.stress[node],
+            sides: [ends(&envelope.moment_ends, node), ends(&envelope.shear_ends, node)],
+        });
+        let either = |[left, right]: [[f64; 2]; 2]| [left[0].min(right[0]), left[1].max(right[1])];
+        let between = envelope.places.iter().map(|of| EnvelopeRow {
+            x: of.x,
+            ranges: [of.deflection, either(of.moment), either(of.shear)],
+            stress: of.stress,
+            sides: [of.moment.map(Some), of.shear.map(Some)],
+        });
+        let mut rows: Vec<EnvelopeRow> = at_nodes.chain(between).collect();
+        rows.sort_by(|a, b| a.x.total_cmp(&b.x));
+        rows.iter().for_each(|row| row.push(&record.beam, &mut text));
     }
     (text.len() > header).then_some(text)
 }

@@ -1,7 +1,7 @@
 //! `summary.json`: the numbers of a run.
 
 use crate::verdict::{BodyVerdict, StopReason, headline};
-use crate::{BeamRecord, ImpactRow, LargestStress, ReactionRange, Record, Warning};
+use crate::{BeamRecord, ImpactRow, LargestDeflection, LargestStress, ReactionRange, Record, Warning};
 use crate::{made_energy, taken_energy, unlocated};
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -104,6 +104,9 @@ pub struct Summary {
     /// What beams bore, of those that are asked.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub beams: Vec<BorneSummary>,
+    /// The largest deflection of each beam, of a scene without blocks; the largest part of a span first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub deflections: Vec<LargestDeflection>,
     /// The records that prescribe motions, as used.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<RecordSummary>,
@@ -362,11 +365,17 @@ impl Summary {
         peaks.sort_by(|a, b| a.t.total_cmp(&b.t));
         let gains = &ledger.positive_contact_work;
         let verdict = record.fates.verdict(scene, layout, state, &record.rocking);
+        let mut deflections = record.deflections.clone();
+        let part = |of: &LargestDeflection| {
+            let span = scene.beams.iter().find(|beam| beam.name == of.beam).map_or(1.0, |beam| beam.spec.span);
+            of.w.abs() / span
+        };
+        deflections.sort_by(|a, b| part(b).total_cmp(&part(a)));
         let beams: Vec<BorneSummary> = record.beams.iter().map(|borne| BorneSummary::new(scene, borne)).collect();
         let first =
             |of: fn(&BodyVerdict) -> Option<f64>, pick: fn(f64, f64) -> f64| verdict.iter().filter_map(of).reduce(pick);
         Self {
-            headline: headline(scene, state, &verdict, &beams),
+            headline: headline(scene, state, &verdict, (&beams, &deflections)),
             max_phi_over_alpha: first(|of| of.max_phi_over_alpha, f64::max),
             overturned_at: first(|of| of.overturned_at, f64::min),
             rests_from: verdict
@@ -418,6 +427,7 @@ impl Summary {
             crossings,
             peaks,
             beams,
+            deflections,
             verdict,
             records: scene.records().map(|of| RecordSummary::new(of)).collect(),
             horizon: record.horizon,

@@ -2,6 +2,7 @@
 
 use crate::Warning;
 use crate::made_energy::percent;
+use crate::with_digits;
 use teeter_integrator::Ledger;
 use teeter_scenario::scene::{Scene, SchemeName};
 
@@ -30,10 +31,11 @@ pub(crate) fn warning(scene: &Scene, ledger: &Ledger) -> Option<Warning> {
         _ => ("by its rule with `time.theta` over 1/2", "`time.theta = 0.5` takes none"),
     };
     let text = format!(
-        "{} took {taken:.2e} J of energy, {} of the scene's energy scale of {:.2e} J, {how}; {remedy}",
+        "{} took {} of energy, {} of the scene's energy scale of {}, {how}; {remedy}",
         scene.time.scheme.word(),
+        with_digits(taken, "J", 3),
         percent(taken / ledger.scale),
-        ledger.scale,
+        with_digits(ledger.scale, "J", 3),
     );
     Some(Warning { code: ENERGY_TAKEN.into(), count: 1, first_t: None, text })
 }

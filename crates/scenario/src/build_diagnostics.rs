@@ -8,6 +8,7 @@ use crate::resolve::names::table_of;
 use crate::simulation::{BuildError, beyond, touching};
 use teeter_beam::{BeamError, ModalError, ModesError, StaticError};
 use teeter_integrator::{EquilibriumError, ModelError};
+use teeter_text::readable::with_digits;
 
 impl BuildError {
     /// The error as a diagnostic of its scene, at the key that causes it.
@@ -22,7 +23,7 @@ impl BuildError {
     /// let error = Simulation::new(&resolved.scene).unwrap_err();
     /// let found = error.diagnostic(&resolved.document);
     /// assert_eq!((found.path.as_str(), found.position), ("block.cube.position", Some((12, 12))));
-    /// assert!(found.rule.contains("1.0e-1 m below the surface of `ground`"));
+    /// assert!(found.rule.contains("100 mm below the surface of `ground`"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
@@ -53,9 +54,11 @@ impl BuildError {
             Self::Solver(_) => document.error("solver.method", self.to_string(), "use one of the available solvers"),
             Self::Penetration { block, corner, on_side, lower, surface, depth, tolerance } => {
                 let rule = format!(
-                    "{} starts {depth:.1e} m {} `{surface}`; up to {tolerance:.1e} m are taken for rounding",
+                    "{} starts {} {} `{surface}`; up to {} are taken for rounding",
                     touching(*on_side, corner),
-                    beyond(*on_side, *lower)
+                    with_digits(*depth, "m", 2),
+                    beyond(*on_side, *lower),
+                    with_digits(*tolerance, "m", 2)
                 );
                 let remedy = if document.has(&format!("block.{}.position", table_of(document, block))) {
                     "move the block up, or give on, at and tilt instead of position: it then stands on the surface"
@@ -66,7 +69,7 @@ impl BuildError {
             }
             Self::Overlap { first, second, depth } => document.error(
                 &place_of(second, document),
-                format!("`{second}` overlaps `{first}` by {depth:.1e} m at the start"),
+                format!("`{second}` overlaps `{first}` by {} at the start", with_digits(*depth, "m", 2)),
                 "move one of the two",
             ),
             Self::Shape(_) | Self::Wiring(_) => document.error(

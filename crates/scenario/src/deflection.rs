@@ -2,6 +2,7 @@
 
 use std::fmt;
 use teeter_beam::{Beam, Dof};
+use teeter_text::readable::with_unit;
 
 /// A deflection over this part of the span is large.
 pub const LARGE_DEFLECTION: f64 = 0.1;
@@ -49,8 +50,10 @@ impl fmt::Display for LargeDeflection {
         let Self { x, w, slope } = self;
         write!(
             f,
-            "w = {w:.3e} m, slope {slope:.3} at x = {x:.4} m; the theory is for small slopes, and beyond {LARGE_DEFLECTION} of the span or \
-             a slope of {LARGE_SLOPE} not to be trusted"
+            "w = {}, slope {slope:.3} at x = {}; the theory is for small slopes, and beyond {LARGE_DEFLECTION} of the span or \
+             a slope of {LARGE_SLOPE} not to be trusted",
+            with_unit(*w, "m"),
+            with_unit(*x, "m")
         )
     }
 }

@@ -68,7 +68,7 @@ mod unused_keys;
 pub mod wording;
 mod words;
 
-pub use teeter_text::{diagnostic, dimension, document, measure, quantity, source, suggest, units, value};
+pub use teeter_text::{diagnostic, dimension, document, measure, quantity, readable, source, suggest, units, value};
 
 pub use left_out::left_out;
 pub use meeting::{Meeting, Shapes};

@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use teeter_beam::{Axial, Beam, Digits, MatrixWeights};
 use teeter_integrator::{ImpactLaw, PairLaw};
+use teeter_text::readable::with_digits;
 
 /// Findings of the checks.
 #[derive(Debug, Default)]
@@ -114,9 +115,10 @@ fn sagging(beam: &BeamScene, sag: Option<MeshComparison>) -> String {
     let own = sag.beam.unwrap_or(sag.model);
     let part = wording::part_of(own, beam.spec.span);
     match sag.exact_if_different() {
-        None => format!("the beam sags by {own:.2e} m under {weight}, {part}"),
+        None => format!("the beam sags by {} under {weight}, {part}", with_digits(own, "m", 3)),
         Some(_) => {
-            format!("the beam sags by {own:.2e} m under {weight}, {part} ({:.2e} m in the model)", sag.model)
+            let [own, model] = [own, sag.model].map(|sag| with_digits(sag, "m", 3));
+            format!("the beam sags by {own} under {weight}, {part} ({model} in the model)")
         }
     }
 }

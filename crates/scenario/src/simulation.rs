@@ -27,6 +27,7 @@ use teeter_integrator::{
     StateError, StepError, StepReport, Subsystem, Unsolved, WorkCounts, Workspace, run,
 };
 use teeter_rigid::RigidError;
+use teeter_text::readable::with_digits;
 
 pub use crate::layout::{BeamPlace, BlockPlace, ContactNames, ContactPoint, CrowdPlace, Layout, PairPlace, PointName};
 
@@ -63,8 +64,8 @@ pub enum BuildError {
     Solver(String),
     /// A corner that starts below its surface.
     #[error(
-        "block `{block}`: {} starts {depth:e} m {} `{surface}`; up to {tolerance:e} m are allowed for rounding",
-        touching(*on_side, corner), beyond(*on_side, *lower)
+        "block `{block}`: {} starts {} {} `{surface}`; up to {} are allowed for rounding",
+        touching(*on_side, corner), with_digits(*depth, "m", 2), beyond(*on_side, *lower), with_digits(*tolerance, "m", 2)
     )]
     Penetration {
         /// The block.
@@ -89,7 +90,7 @@ pub enum BuildError {
     #[error(transparent)]
     Wiring(#[from] WiringError),
     /// Two blocks that start in the same place.
-    #[error("block `{second}`: it overlaps `{first}` by {depth:e} m at the start")]
+    #[error("block `{second}`: it overlaps `{first}` by {} at the start", with_digits(*depth, "m", 2))]
     Overlap {
         /// The block that comes first in the file.
         first: String,

@@ -26,6 +26,7 @@ mod judge;
 pub mod keys;
 pub mod measure;
 pub mod quantity;
+pub mod readable;
 pub mod schema;
 mod sets;
 pub mod source;

@@ -88,13 +88,13 @@ const WIDTH: usize = 100;
 
 /// Width of the other columns with the gaps between them: solver, contacts, outcome, residual,
 /// iterations, time.
-const OTHERS: usize = 2 + 18 + 2 + 8 + 2 + 14 + 2 + 8 + 2 + 6 + 2 + 9;
+const OTHERS: usize = 2 + 18 + 2 + 8 + 2 + 14 + 2 + 8 + 2 + 6 + 2 + 8;
 
 /// Least width of the names of files: they are cut to that, if anything must.
 const SHORTEST_FILE: usize = 12;
 
-/// Width of an optional column with the gap before it.
-const OPTIONAL: usize = 11;
+/// Width of an optional column, tolerance or asymmetry, with the gap before it: powers of ten.
+const OPTIONAL: usize = 2 + 5;
 
 impl RowColumns {
     pub(super) fn new(inputs: &[Input], several_tolerances: bool) -> Self {
@@ -110,9 +110,9 @@ impl RowColumns {
     }
 
     pub(super) fn header(&self) -> String {
-        let tolerance = self.tolerance.then_some("tolerance");
-        let asymmetry = self.asymmetry.then_some("asymmetry");
-        self.line(["file", "solver", "contacts", "outcome", "residual", "iter.", "time / ms"], tolerance, asymmetry)
+        let tolerance = self.tolerance.then_some("tol.");
+        let asymmetry = self.asymmetry.then_some("asym.");
+        self.line(["file", "solver", "contacts", "outcome", "residual", "iter.", "time/ms"], tolerance, asymmetry)
     }
 
     pub(super) fn row(&self, row: &Row) -> String {
@@ -124,7 +124,7 @@ impl RowColumns {
             (format!("{:.1e}", m.residual), m.iterations.to_string(), significant(m.time_ms));
         let tolerance = self.tolerance.then(|| format!("{:e}", row.tolerance));
         let asymmetry = self.asymmetry.then(|| match row.asymmetry {
-            some if some > ASYMMETRIC => format!("{some:.1e}"),
+            some if some > ASYMMETRIC => format!("{some:.0e}"),
             _ => String::new(),
         });
         self.line(
@@ -147,11 +147,11 @@ impl RowColumns {
     fn line(&self, cells: [&str; 7], tolerance: Option<&str>, asymmetry: Option<&str>) -> String {
         let [file, solver, contacts, outcome, residual, iterations, time] = cells;
         let width = self.file;
-        let tolerance = tolerance.map(|text| format!("  {text:>9}")).unwrap_or_default();
-        let asymmetry = asymmetry.map(|text| format!("  {text:>9}")).unwrap_or_default();
+        let tolerance = tolerance.map(|text| format!("  {text:>5}")).unwrap_or_default();
+        let asymmetry = asymmetry.map(|text| format!("  {text:>5}")).unwrap_or_default();
         let line = format!(
             "{file:width$}  {solver:18}  {contacts:>8}{tolerance}  {outcome:14}  {residual:>8}  {iterations:>6}  \
-             {time:>9}{asymmetry}"
+             {time:>8}{asymmetry}"
         );
         format!("{}\n", line.trim_end())
     }
@@ -181,7 +181,7 @@ mod tests {
         let file = "benches/problems/scenarios/two-blocks-on-beam/two-blocks-on-beam-step000123.hdf5".to_owned();
         let row =
             Row { file, solver: "auto", dimension: 3, contacts: 1234, tolerance: 1e-10, asymmetry: 1e-9, measured };
-        for (tolerance, asymmetry) in [(false, false), (true, false), (false, true)] {
+        for (tolerance, asymmetry) in [(false, false), (true, false), (false, true), (true, true)] {
             let columns = RowColumns::of_width(row.file.chars().count(), tolerance, asymmetry);
             for line in [columns.header(), columns.row(&row)] {
                 assert!(line.trim_end().chars().count() <= WIDTH, "{line}");

@@ -203,8 +203,8 @@ fn geometry() -> Vec<Row> {
     vec![
         refused(21, "block wider than the beam", Set(&["block.rocker.width=50 cm"]), &["block.rocker.width", "0.5 m wide", "0.36 m"]),
         refused(22, "corner off the beam", Edit(&[("at       = \"18 cm\"", "at = \"35 cm\""), (TILT, "")]), &["block.rocker.at = \"35 cm\"", "bottom-right", "x = 0.365 m", "0.36 m", "contact.feet.points = \"all\""]),
-        refused(23, "corner below the surface", Edit(&[(PLACE, "position = [\"18 cm\", \"6.65 cm\"]"), ("start         = \"static\"", "")]), &["block.rocker.position", "[\"18 cm\", \"6.65 cm\"]", "1.0e-3 m below", "bottom-left", "`table`", "1.4e-10 m"]),
-        refused(24, "two blocks in one place", Text(OVERLAPPING), &["block.right.at = \"19 cm\"", "`left`", "`right`", "1.0e-2 m"]),
+        refused(23, "corner below the surface", Edit(&[(PLACE, "position = [\"18 cm\", \"6.65 cm\"]"), ("start         = \"static\"", "")]), &["block.rocker.position", "[\"18 cm\", \"6.65 cm\"]", "1 mm below", "bottom-left", "`table`", "140 pm"]),
+        refused(24, "two blocks in one place", Text(OVERLAPPING), &["block.right.at = \"19 cm\"", "`left`", "`right`", "10 mm"]),
         refused(24, "block on a block without a contact", Stack(&[("\"upper\", \"lower\"", "\"upper\", \"ground\"")]), &["block.upper.on = \"lower\"", "there is no contact between the two", "[contact.NAME]"]),
         refused(24, "block on itself", Stack(&[("on = \"lower\"", "on = \"upper\"")]), &["block.upper.on = \"upper\"", "can't stand on itself"]),
         refused(24, "blocks on each other", Stack(&[("on = \"ground\"", "on = \"upper\"")]), &["block.lower.on = \"upper\"", "in a cycle"]),

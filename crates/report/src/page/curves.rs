@@ -92,10 +92,6 @@ pub(crate) struct Curves {
     buckets: Vec<Bucket>,
     /// `start.1.len()` a bucket.
     extremes: Vec<Extremes>,
-    /// Of the first columns, so many as this, `samples` holds the values at the end of each bucket: those belong together,
-    /// as extremes don't.
-    sampled: usize,
-    samples: Vec<f64>,
     contacts: usize,
     /// `contacts` a bucket.
     works: Vec<Work>,
@@ -115,17 +111,14 @@ pub(crate) struct ForceCurve {
 }
 
 impl Curves {
-    /// Curves from values at the start on, in at most `capacity` buckets (an even number), of the first `sampled` with
-    /// samples, with `contacts` contact points.
-    pub(crate) fn new(capacity: usize, t: f64, start: Vec<f64>, sampled: usize, contacts: usize) -> Self {
+    /// Curves from values at the start on, in at most `capacity` buckets (an even number), with `contacts` contact points.
+    pub(crate) fn new(capacity: usize, t: f64, start: Vec<f64>, contacts: usize) -> Self {
         Self {
             capacity,
             stride: 2,
             start: (t, start),
             buckets: Vec::new(),
             extremes: Vec::new(),
-            sampled,
-            samples: Vec::new(),
             contacts,
             works: Vec::new(),
         }
@@ -143,8 +136,6 @@ impl Curves {
             }
             None => self.begin_bucket(t, values),
         }
-        let at = self.samples.len().saturating_sub(self.sampled);
-        self.samples[at..].copy_from_slice(&values[..self.sampled]);
     }
 
     /// Begins a bucket, as all before it are full, with the values at the end of its first step.
@@ -156,7 +147,6 @@ impl Curves {
         let begin = self.buckets.last().map_or(self.start.0, |bucket| bucket.last);
         self.buckets.push(Bucket { begin, first: t, last: t, steps: 1 });
         self.extremes.extend(values.iter().map(|&x| Extremes::of(t, x)));
-        self.samples.resize(self.samples.len() + self.sampled, 0.0);
         let before = self.works.len().saturating_sub(self.contacts);
         for k in 0..self.contacts {
             let slip = self.works.get(before + k).map_or(0.0, |work| work.slip);
@@ -174,7 +164,7 @@ impl Curves {
     }
 
     fn halve(&mut self) {
-        let (columns, sampled, pairs) = (self.start.1.len(), self.sampled, self.buckets.len() / 2);
+        let (columns, pairs) = (self.start.1.len(), self.buckets.len() / 2);
         for i in 0..pairs {
             let (a, b) = (self.buckets[2 * i], self.buckets[2 * i + 1]);
             self.buckets[i] = Bucket { begin: a.begin, first: a.first, last: b.last, steps: a.steps + b.steps };
@@ -184,7 +174,6 @@ impl Curves {
                 joined.take(later);
                 self.extremes[i * columns + k] = joined;
             }
-            self.samples.copy_within((2 * i + 1) * sampled..(2 * i + 2) * sampled, i * sampled);
             for k in 0..self.contacts {
                 let (a, b) = (self.works[2 * i * self.contacts + k], self.works[(2 * i + 1) * self.contacts + k]);
                 self.works[i * self.contacts + k] = a.join(b);
@@ -195,12 +184,10 @@ impl Curves {
         if odd == 1 {
             self.buckets[pairs] = self.buckets[2 * pairs];
             self.extremes.copy_within(2 * pairs * columns.., pairs * columns);
-            self.samples.copy_within(2 * pairs * sampled.., pairs * sampled);
             self.works.copy_within(2 * pairs * self.contacts.., pairs * self.contacts);
         }
         let pairs = pairs + odd;
         self.buckets.truncate(pairs);
-        self.samples.truncate(pairs * sampled);
         self.extremes.truncate(pairs * columns);
         self.works.truncate(pairs * self.contacts);
         self.stride *= 2;
@@ -218,12 +205,6 @@ impl Curves {
             fewer.halve();
         }
         fewer
-    }
-
-    /// One of the sampled quantities at the start and at the end of each bucket, at the times of [`Curves::borders`].
-    pub(crate) fn samples(&self, column: usize) -> Vec<f64> {
-        let samples = self.samples.iter().skip(column).step_by(self.sampled.max(1));
-        std::iter::once(self.start.1[column]).chain(samples.copied()).collect()
     }
 
     /// Times of the points of [`Curves::curve`], s.
@@ -272,7 +253,7 @@ mod tests {
     use super::*;
 
     fn run(capacity: usize, steps: u32, x: impl Fn(f64) -> f64) -> Curves {
-        let mut curves = Curves::new(capacity, 0.0, vec![x(0.0)], 1, 1);
+        let mut curves = Curves::new(capacity, 0.0, vec![x(0.0)], 1);
         for k in 1..=steps {
             let t = f64::from(k);
             curves.enter(t, &[x(t)]);
@@ -313,15 +294,6 @@ mod tests {
     }
 
     #[test]
-    fn samples_belong_to_one_instant() {
-        for (capacity, steps) in [(4, 8), (4, 100), (10, 17)] {
-            let curves = run(capacity, steps, |t| (7.0 * t).sin());
-            let values: Vec<f64> = curves.borders().iter().map(|t| (7.0 * t).sin()).collect();
-            assert_eq!(curves.samples(0), values, "{steps} steps in {capacity}");
-        }
-    }
-
-    #[test]
     fn forces_are_means_and_states_majorities() {
         for steps in [1, 8, 9, 1000] {
             let forces = run(4, steps, |t| t).forces(0).unwrap();
@@ -330,6 +302,6 @@ mod tests {
             assert_eq!(forces.state[0], ContactState::Stick);
             assert_eq!(forces.slip.last(), Some(&(0.5 * f64::from(steps))), "what was slipped adds up");
         }
-        assert_eq!(Curves::new(4, 0.0, vec![], 0, 2).forces(1), None);
+        assert_eq!(Curves::new(4, 0.0, vec![], 2).forces(1), None);
     }
 }

@@ -81,7 +81,7 @@ struct SeriesData {
     y: Vec<f64>,
 }
 
-/// A coordinate and its velocity, at the borders of the forces.
+/// A coordinate and its velocity, at times of their own.
 #[derive(Serialize)]
 struct PortraitData {
     id: &'static str,
@@ -97,6 +97,7 @@ struct PortraitData {
 struct PortraitSeries {
     label: String,
     index: usize,
+    t: Vec<f64>,
     x: Vec<f64>,
     y: Vec<f64>,
 }
@@ -477,9 +478,10 @@ fn portraits(panels: &Panels) -> Vec<PortraitData> {
         series: portrait
             .lines
             .iter()
-            .map(|(label, index, x, y)| {
-                let [x, y] = [x, y].map(|values| values.iter().copied().map(digits).collect());
-                PortraitSeries { label: label.clone(), index: *index, x, y }
+            .map(|line| {
+                let [x, y] = [&line.x, &line.v].map(|values| values.iter().copied().map(digits).collect());
+                let t = line.t.iter().copied().map(time).collect();
+                PortraitSeries { label: line.label.clone(), index: line.number, t, x, y }
             })
             .collect(),
     };

@@ -4,7 +4,7 @@ use super::accelerograms;
 use super::bands::BAND_COLUMNS;
 use super::crowd::CrowdCurve;
 use super::drawings;
-use super::panels::{Panels, Place, Portrait, TimePanel, prefix};
+use super::panels::{Panels, Place, Portrait, PortraitLine, TimePanel, prefix};
 use super::recorder::{MANY_IMPACTS, PageRecorder};
 use super::{means, rounded, span};
 use teeter_integrator::ContactState;
@@ -129,8 +129,8 @@ impl Plots<'_> {
     }
 
     fn portrait(&self, portrait: &Portrait) -> Figure {
-        let line = |(label, number, x, y): &(String, usize, Vec<f64>, Vec<f64>)| {
-            Series::line(label, x.iter().copied().zip(y.iter().copied())).number(*number)
+        let line = |line: &PortraitLine| {
+            Series::line(&line.label, line.x.iter().copied().zip(line.v.iter().copied())).number(line.number)
         };
         let lines: Vec<Series> = portrait.lines.iter().map(line).collect();
         let x = lines.iter().flat_map(Series::points).map(|point| point.0);

@@ -6,8 +6,8 @@ use super::panels::Panels;
 use super::recorder::PageRecorder;
 use super::rocking::{HalfCycle, half_cycles};
 use super::{data, rounded, span, thrust};
-use crate::Summary;
 use crate::summary::{BeamSummary, RemovedSummary};
+use crate::{Summary, with_digits};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -94,7 +94,10 @@ const CLOCKED: [&str; 2] = ["wall_seconds", "us_per_step"];
 impl Numbers {
     /// The text of a value as the file has it, a word without its quotes.
     fn text(&self, path: &str) -> String {
-        match path.split('.').try_fold(&self.0, |value, key| value.get(key)) {
+        match path
+            .split('.')
+            .try_fold(&self.0, |value, key| value.get(key).or_else(|| value.get(key.parse::<usize>().ok()?)))
+        {
             Some(Value::String(word)) => word.clone(),
             Some(value) => value.to_string(),
             None => String::new(),
@@ -125,7 +128,8 @@ impl Numbers {
 }
 
 /// What users want to know first: the numbers of the mechanics, then from [`NUMERIC`] on those of the computation.
-const TILES: [&str; 12] = [
+const TILES: [&str; 13] = [
+    "deflections.0.w",
     "max_phi_over_alpha",
     "overturned_at",
     "rests_from",
@@ -141,7 +145,7 @@ const TILES: [&str; 12] = [
 ];
 
 /// The first tile that is of the computation.
-const NUMERIC: usize = 6;
+const NUMERIC: usize = 7;
 
 /// The sentence at the head of the page.
 fn verdict(summary: &Summary) -> String {
@@ -149,7 +153,11 @@ fn verdict(summary: &Summary) -> String {
     for (number, part) in summary.headline.split('`').enumerate() {
         // A number stays with its name and its unit.
         let part = escaped(part).replace(" = ", "\u{a0}=\u{a0}").replace(" ms", "\u{a0}ms");
-        if number % 2 == 1 { _ = write!(html, "<span class=\"name\">{part}</span>") } else { html.push_str(&part) }
+        if number % 2 == 1 {
+            _ = write!(html, "‘<span class=\"name\">{part}</span>’")
+        } else {
+            html.push_str(&part)
+        }
     }
     if let Some(reason) = summary.stopped_by {
         _ = write!(html, "; the run stopped there ({})", reason.word());
@@ -160,8 +168,15 @@ fn verdict(summary: &Summary) -> String {
 fn tiles(values: &Numbers, summary: &Summary) -> String {
     let mut html = String::new();
     let seconds = |t: Option<f64>| t.map(|t| with_prefix(t, "s"));
+    // Without contacts their numbers would all be 0.
+    let touches = !summary.model.contacts.is_empty() || summary.contact.max_contacts > 0;
+    let of_contacts = ["impact_count", "reclosure_count", "max_penetration"];
     for (number, path) in TILES.into_iter().enumerate() {
+        if !touches && (of_contacts.contains(&path) || path.starts_with("contact.")) {
+            continue;
+        }
         let (label, shown) = match path {
+            "deflections.0.w" => ("Largest deflection", summary.deflections.first().map(|of| with_prefix(of.w, "m"))),
             "max_phi_over_alpha" => ("Largest φ/α", summary.max_phi_over_alpha.map(share_of_critical_angle)),
             "overturned_at" => ("First overturned at", seconds(summary.overturned_at)),
             "rests_from" => ("All at rest from", seconds(summary.rests_from)),
@@ -434,15 +449,10 @@ fn model(summary: &Summary) -> String {
 
 /// A number with three digits and the prefix that suits it, such as `9.04 µm`.
 fn with_prefix(x: f64, unit: &str) -> String {
-    const PREFIXES: [(f64, &str); 6] = [(1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p")];
-    let size = rounded(x.abs(), 3);
-    if size == 0.0 {
-        return format!("0 {unit}");
-    }
-    // Beyond the prefixes' range, powers of ten.
-    match PREFIXES.iter().find(|(factor, _)| size >= *factor && size < 1000.0 * factor) {
-        Some((factor, prefix)) => format!("{} {prefix}{unit}", rounded(x / factor, 3)),
-        None => format!("{} {unit}", scientific(x)),
+    match with_digits(x, unit, 3) {
+        // Beyond the prefixes' range, powers of ten.
+        text if text.contains('e') => format!("{} {unit}", scientific(x)),
+        text => text.replace('-', "\u{2212}"),
     }
 }
 

@@ -59,7 +59,7 @@ mod tests {
     use teeter_integrator::ContactState;
 
     fn run(force: impl Fn(f64) -> f64) -> (Curves, ForceCurve) {
-        let mut curves = Curves::new(1000, 0.0, vec![], 0, 1);
+        let mut curves = Curves::new(1000, 0.0, vec![], 1);
         for k in 1..=1000 {
             let t = 1e-3 * f64::from(k);
             curves.enter(t, &[]);

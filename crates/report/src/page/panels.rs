@@ -63,8 +63,20 @@ pub(crate) struct Portrait {
     pub(crate) y_unit: String,
     pub(crate) least: [f64; 2],
     pub(crate) guides: Vec<f64>,
-    /// Block by block: label, number, and its values at the borders of the buckets.
-    pub(crate) lines: Vec<(String, usize, Vec<f64>, Vec<f64>)>,
+    /// By blocks.
+    pub(crate) lines: Vec<PortraitLine>,
+}
+
+/// A block's curve: times, s, coordinates and velocities in the units of the axes.
+#[derive(Debug, Clone)]
+pub(crate) struct PortraitLine {
+    /// Empty if it is the only one that there can be.
+    pub(crate) label: String,
+    /// Number of its colour.
+    pub(crate) number: usize,
+    pub(crate) t: Vec<f64>,
+    pub(crate) x: Vec<f64>,
+    pub(crate) v: Vec<f64>,
 }
 
 /// All that is drawn over time of a run, but contact forces, and what isn't.
@@ -133,7 +145,7 @@ impl Panels {
     /// How many numbers the curves take on the page.
     fn numbers(&self) -> usize {
         let lines = self.panels.iter().flat_map(|panel| &panel.lines).map(|line| line.y.len()).sum::<usize>();
-        let portraits = self.portraits.iter().flat_map(|portrait| &portrait.lines).map(|line| 2 * line.2.len());
+        let portraits = self.portraits.iter().flat_map(|portrait| &portrait.lines).map(|line| 3 * line.t.len());
         let forces = self.forces.iter().flatten().map(|forces| 3 * forces.normal.len());
         lines + portraits.sum::<usize>() + forces.sum::<usize>() + 3 * self.curves.len()
     }

@@ -4,6 +4,7 @@ use super::bands::{BAND_COLUMNS, Bands};
 use super::curves::Curves;
 use super::frames::Frames;
 use super::network::Network;
+use super::orbit::Orbit;
 use super::rounded;
 use super::scenery::Scenery;
 use crate::closed::Closed;
@@ -53,6 +54,9 @@ pub(crate) const ENERGIES: [&str; 11] = [
 /// Columns of a block in [`Curves`]: x, y, φ and their velocities. Of many blocks there are bands instead.
 pub(crate) const BLOCK_COLUMNS: usize = 6;
 
+/// Coordinates of a block.
+pub(crate) const BLOCK_COORDINATES: usize = 3;
+
 /// Columns of a prescribed coordinate: displacement, velocity, acceleration.
 pub(crate) const MOTION_COLUMNS: usize = 3;
 
@@ -88,6 +92,8 @@ pub(crate) struct Kept {
     pub(crate) frames: Frames,
     pub(crate) network: Network,
     pub(crate) curves: Curves,
+    /// x, y and φ of each block with their velocities; none of many blocks.
+    pub(crate) orbits: Vec<Orbit>,
     pub(crate) impacts: Vec<ImpactMark>,
     /// All impacts, marked or not.
     pub(crate) impact_count: u64,
@@ -171,7 +177,8 @@ impl PageRecorder {
                 } else {
                     Network::default()
                 },
-                curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], scenery.sampled(), points),
+                curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], points),
+                orbits: Vec::new(),
                 impacts: Vec::new(),
                 impact_count: 0,
                 density: BTreeMap::new(),
@@ -277,6 +284,15 @@ impl PageRecorder {
         }
     }
 
+    fn take_orbits(&mut self, t: f64) {
+        let of_blocks = self.row.chunks_exact(BLOCK_COLUMNS);
+        for (orbits, row) in self.kept.orbits.chunks_exact_mut(BLOCK_COORDINATES).zip(of_blocks) {
+            for (k, orbit) in orbits.iter_mut().enumerate() {
+                orbit.enter([t, row[k], row[BLOCK_COORDINATES + k]]);
+            }
+        }
+    }
+
     fn take_contacts(&mut self, step: &StepReport<'_, 2>) {
         for part in step.active() {
             if self.scenery.has_network() {
@@ -332,6 +348,7 @@ impl PageRecorder {
     pub(crate) fn see_step(&mut self, step: &StepReport<'_, 2>, state: &State, closed: &[Closed]) {
         self.take_row(state);
         self.kept.curves.enter(state.t, &self.row);
+        self.take_orbits(state.t);
         self.take_contacts(step);
         // After the contacts: what they did belongs to the picture at the step's end.
         self.take_frame(state);
@@ -375,8 +392,11 @@ impl Observer<2> for PageRecorder {
         self.take_frame(state);
         self.take_row(state);
         self.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
-        self.kept.curves =
-            Curves::new(self.bucket_capacity, state.t, self.row.clone(), self.scenery.sampled(), self.scenery.points);
+        self.kept.curves = Curves::new(self.bucket_capacity, state.t, self.row.clone(), self.scenery.points);
+        let drawn = if self.scenery.is_crowded() { 0 } else { self.scenery.blocks.len() };
+        // Not clones of one, which would lack its capacity.
+        self.kept.orbits = (0..BLOCK_COORDINATES * drawn).map(|_| Orbit::default()).collect();
+        self.take_orbits(state.t);
         Ok(())
     }
 

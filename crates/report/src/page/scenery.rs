@@ -301,12 +301,6 @@ impl Scenery {
         if self.is_crowded() { 2 * BAND_COLUMNS } else { BLOCK_COLUMNS * self.blocks.len() }
     }
 
-    /// Of how many columns, from the first on, the values at the ends of buckets are kept, too: those of blocks, for phase
-    /// portraits.
-    pub(crate) fn sampled(&self) -> usize {
-        if self.is_crowded() { 0 } else { self.block_columns() }
-    }
-
     /// The first column of a beam's deflections: at midspan, then at its probes.
     pub(crate) fn beam_column(&self, beam: usize) -> usize {
         self.block_columns() + self.beams[..beam].iter().map(|beam| 1 + beam.probes.len()).sum::<usize>()

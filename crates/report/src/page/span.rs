@@ -50,10 +50,20 @@ pub(super) fn envelopes(recorder: &PageRecorder, id: &str) -> Option<Figure> {
             for (side, word) in [(1, "largest"), (0, "least")] {
                 let label = if several { format!("{} {word}", record.beam) } else { word.to_owned() };
                 // An element's two ends: at a node the line jumps where a support or a load makes it.
-                let points = ends
-                    .iter()
-                    .zip(x.windows(2))
-                    .flat_map(|(ends, x)| [0, 1].map(|end| (x[end] * unit.per_metre(), factor * ends[end][side])));
+                // So it does at a load inside an element.
+                let at = |x: f64, range: [f64; 2]| (x * unit.per_metre(), factor * range[side]);
+                let within = |ends: &[f64]| {
+                    let [from, to] = [ends[0], ends[1]];
+                    let inside = envelope.places.iter().filter(move |place| place.x > from && place.x < to);
+                    inside.flat_map(move |place| {
+                        let sides = if shear { place.shear } else { place.moment };
+                        sides.map(|range| (place.x, range))
+                    })
+                };
+                let points = ends.iter().zip(x.windows(2)).flat_map(|(ends, x)| {
+                    let between = within(x).map(|(x, range)| at(x, range));
+                    std::iter::once(at(x[0], ends[0])).chain(between).chain([at(x[1], ends[1])]).collect::<Vec<_>>()
+                });
                 lines.push(Series::line(label, points).number(lines.len()));
             }
         }

@@ -26,6 +26,17 @@ pub const VTK_SERIES: &str = "vtk/scene.pvd";
 const PICTURES: f64 = 200.0;
 const MOST_PICTURES: f64 = 2000.0;
 
+/// The name of a picture beside the series.
+fn picture_name(number: usize) -> String {
+    format!("picture-{number:04}.vtu")
+}
+
+/// Whether a file of that name is a picture of a series.
+pub(crate) fn is_vtk_picture(name: &str) -> bool {
+    let number = name.strip_prefix("picture-").and_then(|rest| rest.strip_suffix(".vtu"));
+    number.and_then(|number| number.parse().ok()).is_some_and(|number| picture_name(number) == name)
+}
+
 /// What acted at a contact since the last picture.
 #[derive(Debug, Clone, Copy)]
 struct Acted {
@@ -84,7 +95,7 @@ impl VtkRecorder {
         let mut series = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n".to_owned();
         let mut files = Vec::new();
         for (number, (t, text)) in self.pictures.iter().enumerate() {
-            let name = format!("picture-{number:04}.vtu");
+            let name = picture_name(number);
             let _ = writeln!(series, "<DataSet timestep=\"{t:?}\" part=\"0\" file=\"{name}\"/>");
             files.push((format!("vtk/{name}"), text.clone()));
         }

@@ -2,8 +2,8 @@
 
 use super::{Kept, Recorder};
 use crate::bounces::{CONTESTED, Contested};
-use crate::readable::{shortest, with_digits, with_unit};
 use crate::resolution::{Of, raise};
+use crate::{shortest, with_digits, with_unit};
 use teeter_integrator::{Model, State, StepReport};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::{FAR_TURN, deflection};
@@ -39,6 +39,11 @@ fn fastest(layout: &Layout, state: &State) -> [f64; 2] {
     [fastest + carried, turning]
 }
 
+/// A time in a warning: with so many digits that it tells one step from another.
+fn time(t: f64) -> String {
+    with_digits(t, "s", 7)
+}
+
 impl Recorder<'_> {
     /// Enters a warning, and tells it if it is to be told now.
     fn warn(&mut self, code: &'static str, t: Option<f64>, text: impl FnOnce() -> String) {
@@ -65,9 +70,9 @@ impl Recorder<'_> {
         let Some((name, spin)) = ground.chain(blocks).find(|(_, spin)| spin.abs() >= fastest) else { return };
         self.warn_once("far-turn", state.t, || {
             format!(
-                "`{name}` turns by {:.2} rad in the step to t = {} s, and is no longer followed from {FAR_TURN} on; take a step of at most {}",
+                "`{name}` turns by {:.2} rad in the step to t = {}, and is no longer followed from {FAR_TURN} on; take a step of at most {}",
                 spin.abs() * state.dt,
-                state.t,
+                time(state.t),
                 with_digits(FAR_TURN / spin.abs(), "s", 1)
             )
         });
@@ -84,9 +89,12 @@ impl Recorder<'_> {
         let (Some(landed), Some(cut)) = (layout.names_of(landed), layout.names_of(cut)) else { return };
         self.warn(CONTESTED, Some(t), || {
             format!(
-                "contact `{}`: {} landed at t = {t:.6} s while {} was kept closed, whose bounces, shorter than two steps, may still have gone on: which \
+                "contact `{}`: {} landed at t = {} while {} was kept closed, whose bounces, shorter than two steps, may still have gone on: which \
                  of them catches the block hangs on the step; take a shorter one (`time.step`), or `event-driven`, and compare",
-                landed.contact, landed.point, cut.point
+                landed.contact,
+                landed.point,
+                time(t),
+                cut.point
             )
         });
     }
@@ -96,13 +104,13 @@ impl Recorder<'_> {
         let Some(limits) = self.layout.required.limits.filter(|limits| !limits.hold(state)) else { return };
         self.warn("model-limits", Some(state.t), || {
             format!(
-                "at t = {} s the energy is {:.6} J and the deepest penetration so far {:.1e} m, over the {:.6} J or the {:.1e} m up to which \
+                "at t = {} the energy is {:.6} J and the deepest penetration so far {}, over the {:.6} J or the {} up to which \
                  the upper corners of blocks can't touch, and they are not looked at; --model full has them",
-                state.t,
+                time(state.t),
                 state.ledger.current.total(),
-                state.tally.max_penetration,
+                with_digits(state.tally.max_penetration, "m", 2),
                 limits.energy,
-                limits.penetration
+                with_digits(limits.penetration, "m", 2)
             )
         });
     }
@@ -133,11 +141,12 @@ impl Recorder<'_> {
         let [first, second] = [first, second].map(|block| &self.layout.blocks[block]);
         self.warn_once("fast-pass", state.t, || {
             format!(
-                "`{}` and `{}` come {far:.1e} m past each other in the step to t = {} s, more than half of their shorter sides, so that a contact \
+                "`{}` and `{}` come {} past each other in the step to t = {}, more than half of their shorter sides, so that a contact \
                  between them may not be seen; take a step of at most {}",
                 first.name,
                 second.name,
-                state.t,
+                with_digits(far, "m", 2),
+                time(state.t),
                 with_digits(0.4 * (first.side + second.side) * state.dt / far, "s", 1)
             )
         });
@@ -157,7 +166,7 @@ impl Recorder<'_> {
             let q = &state.q[place.range.clone()];
             let nodal = place.basis.as_ref().map(|basis| basis.dofs(q));
             if let Some(large) = deflection::large(&place.beam, nodal.as_deref().unwrap_or(q)) {
-                let text = || format!("`{}` deflects far at t = {} s: {large}", place.name, state.t);
+                let text = || format!("`{}` deflects far at t = {}: {large}", place.name, time(state.t));
                 self.warn_once("large-deflection", state.t, text);
             }
         }
@@ -165,9 +174,10 @@ impl Recorder<'_> {
         if depth > DEEP * self.shortest_side {
             self.warn_once("deep-penetration", state.t, || {
                 format!(
-                    "up to t = {} s a corner was {depth:.2e} m deep in a surface, more than {:.0} % of a block's shorter side: that is no contact any \
+                    "up to t = {} a corner was {} deep in a surface, more than {:.0} % of a block's shorter side: that is no contact any \
                      more; the step is too long for what moves, or a corner came in from the side, past the end of a beam",
-                    state.t,
+                    time(state.t),
+                    with_digits(depth, "m", 3),
                     100.0 * DEEP
                 )
             });
@@ -176,9 +186,9 @@ impl Recorder<'_> {
         if left > UNACCOUNTED {
             self.warn_once("energy-account", state.t, || {
                 format!(
-                    "up to t = {} s the energy of a step is off by {left:.1e} of the scene's scale, far more than rounding: numbers of very \
+                    "up to t = {} the energy of a step is off by {left:.1e} of the scene's scale, far more than rounding: numbers of very \
                      different size act together, and the motion is not to be trusted; check loads, signals and masses, and their units",
-                    state.t
+                    time(state.t)
                 )
             });
         }
@@ -211,8 +221,9 @@ impl Recorder<'_> {
             let name = layout.blocks.get(block).map_or("a block", |place| &place.name);
             self.warn("under-resolved-flight", None, || {
                 format!(
-                    "with this theta `{name}` is off by {off:.1e} m after its longest flight: it falls by (theta - 1/2) g h t too much or too little; take \
-                     theta = 0.5, or a shorter step"
+                    "with this theta `{name}` is off by {} after its longest flight: it falls by (theta - 1/2) g h t too much or too little; take \
+                     theta = 0.5, or a shorter step",
+                    with_digits(off, "m", 2)
                 )
             });
         }
@@ -244,8 +255,8 @@ impl Recorder<'_> {
         let Some((outcome, contacts)) = unsolved else { return };
         self.warn("unconverged", Some(step.t_end), || {
             format!(
-                "the contact problem of the step to t = {} s ({contacts} contacts) was not solved: {} after {} iterations of {}, residual {:.1e}",
-                step.t_end,
+                "the contact problem of the step to t = {} ({contacts} contacts) was not solved: {} after {} iterations of {}, residual {:.1e}",
+                time(step.t_end),
                 outcome.status,
                 outcome.iterations,
                 outcome.used,

@@ -1,18 +1,24 @@
 //! What became of a scene, in a sentence.
 
 use super::{BodyVerdict, Fate};
-use crate::readable::with_unit;
+use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
 use teeter_integrator::State;
+use teeter_scenario::readable::with_unit;
 use teeter_scenario::scene::{Placement, Scene, SupportingBody};
 
 /// Blocks up to this many are told one by one.
 const FEW: usize = 2;
 
 /// What became of the scene.
-pub(crate) fn headline(scene: &Scene, state: &State, verdict: &[BodyVerdict], beams: &[BorneSummary]) -> String {
+pub(crate) fn headline(
+    scene: &Scene,
+    state: &State,
+    verdict: &[BodyVerdict],
+    (beams, deflections): (&[BorneSummary], &[LargestDeflection]),
+) -> String {
     let mut text = match verdict {
-        [] => format!("the motion up to t = {}", with_unit(state.t, "s")),
+        [] => deflected(state, deflections),
         few if few.len() <= FEW => {
             few.iter().map(|of| format!("`{}` {}", of.body, one(scene, of))).collect::<Vec<_>>().join("; ")
         }
@@ -21,13 +27,42 @@ pub(crate) fn headline(scene: &Scene, state: &State, verdict: &[BodyVerdict], be
     let borne = beams.iter().filter_map(|beam| Some((beam.part_of_yield_strength?, beam)));
     if let Some((part, beam)) = borne.max_by(|a, b| a.0.total_cmp(&b.0)) {
         text.push_str(&format!("; `{}` was stressed to {} % of its yield strength", beam.beam, digits(100.0 * part)));
+    } else if verdict.is_empty() {
+        let known = beams.iter().filter_map(|beam| Some((beam.largest_stress?, beam)));
+        if let Some((largest, beam)) = known.max_by(|a, b| a.0.stress.total_cmp(&b.0.stress)) {
+            let (stress, x) = (with_unit(largest.stress, "Pa"), with_unit(largest.x, "m"));
+            text.push_str(&format!(
+                "; the largest stress is {stress} in `{}` at x = {x}, {}",
+                beam.beam,
+                time(largest.t)
+            ));
+        }
+    }
+    text
+}
+
+/// What became of beams without blocks: how far they deflected, in the order given.
+fn deflected(state: &State, deflections: &[LargestDeflection]) -> String {
+    let moved: Vec<_> = deflections.iter().filter(|of| of.w != 0.0).collect();
+    if moved.is_empty() {
+        let what = if deflections.is_empty() { "nothing moves" } else { "nothing deflects" };
+        return format!("{what} up to {}", time(state.t));
+    }
+    let told = |of: &&LargestDeflection| {
+        let way = if of.w < 0.0 { "down" } else { "up" };
+        let (w, x) = (with_unit(of.w.abs(), "m"), with_unit(of.x, "m"));
+        format!("`{}` deflected by up to {w} {way} at x = {x}, {}", of.beam, time(of.t))
+    };
+    let mut text = moved.iter().take(FEW).map(told).collect::<Vec<_>>().join("; ");
+    if moved.len() > FEW {
+        text.push_str(&format!("; the other {} beams by less of their spans", moved.len() - FEW));
     }
     text
 }
 
 /// A number with three digits, for prose.
 fn digits(x: f64) -> String {
-    crate::readable::shortest(x, 3)
+    teeter_scenario::readable::shortest(x, 3)
 }
 
 fn time(t: f64) -> String {

@@ -29,7 +29,7 @@ fn warns(text: &[u8], folder: &Path, sets: &[&str]) {
     assert!(told.contains("`time.scheme = \"moreau-jean-closed\"`"), "{told}");
     let work = made.energy.positive_contact_work;
     for number in [work.sum, work.largest] {
-        assert!(told.contains(&format!("{number:.2e} J")), "{told}");
+        assert!(told.contains(&teeter_report::with_digits(number, "J", 3)), "{told}");
     }
     let closed = [sets, &["time.scheme=moreau-jean-closed"]].concat();
     let without = summary(text, folder, &closed);
@@ -89,7 +89,7 @@ fn energy_that_a_scheme_takes_is_warned_of() {
     let taken = |text: &str, sets: &[&str]| {
         let summary = summary(text.as_bytes(), &folder, &[sets, &["time.end=0.2 s", "time.step=1 ms"]].concat());
         let told = summary.warnings.iter().find(|warning| warning.code == ENERGY_TAKEN)?;
-        assert!(told.text.contains(&format!("{:.2e} J", summary.energy.scale)), "{}", told.text);
+        assert!(told.text.contains(&teeter_report::with_digits(summary.energy.scale, "J", 3)), "{}", told.text);
         Some(told.text.clone())
     };
     let theta = taken(&text, &["time.scheme=moreau-jean", "time.theta=1"]).unwrap();

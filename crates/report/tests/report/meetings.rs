@@ -126,7 +126,7 @@ fn blocks_that_a_step_may_take_past_each_other_are_told_once() {
     let found = summary("bullet", &scene("300 m/s"), &[("time.end", "10 ms")]);
     let told: Vec<_> = found.warnings.iter().filter(|warning| warning.code == "fast-pass").collect();
     assert_eq!(told.len(), 1, "{:?}", found.warnings);
-    assert!(told[0].text.contains("`p` and `q` come 3.0e-1 m past each other"), "{}", told[0].text);
+    assert!(told[0].text.contains("`p` and `q` come 300 mm past each other"), "{}", told[0].text);
     let slow = summary("no-bullet", &scene("30 m/s"), &[("time.end", "100 ms")]);
     assert!(slow.warnings.iter().all(|warning| warning.code != "fast-pass"), "{:?}", slow.warnings);
     assert!(!slow.impacts.is_empty());

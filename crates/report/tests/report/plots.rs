@@ -163,7 +163,7 @@ fn a_portrait_is_as_smooth_as_the_motion() {
     let page = data(&run.html);
     let portrait = &page["portraits"][0]["series"][0];
     let (phi, omega) = (numbers(&portrait["x"]), numbers(&portrait["y"]));
-    let borders = numbers(&page["forces"]["borders"]);
+    let borders = numbers(&portrait["t"]);
     assert_eq!((phi.len(), omega.len()), (borders.len(), borders.len()));
     // Both at one instant: φ changes by the mean of its rate, but in the few stretches in which a corner hits.
     let off = (1..phi.len()).filter(|&k| {

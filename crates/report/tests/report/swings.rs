@@ -92,7 +92,7 @@ fn flights_with_another_theta_than_a_half_are_told_of() {
             .map(|warning| warning.text.clone())
     };
     // (θ − ½) g h t = 9.8 mm, a sixth of its height.
-    assert!(told("flight", &[("time.theta", "1")]).unwrap().contains("9.8e-3 m"));
+    assert!(told("flight", &[("time.theta", "1")]).unwrap().contains("9.8 mm"));
     assert_eq!(told("flight-half", &[]), None);
     assert_eq!(told("flight-fine", &[("time.theta", "1"), ("time.step", "200 us")]), None);
 }

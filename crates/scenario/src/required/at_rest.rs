@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 use teeter_beam::{Beam, DeflectionExtremes};
 use teeter_detect::Frame;
 use teeter_integrator::{BeamFace, Bodies, Compliance, Dynamics, Energy, FactorError, Rows, Size, Traits, Weights};
+use teeter_text::readable::{with_digits, with_unit};
 
 /// A beam that stays in its initial state unless something touches it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,11 +66,12 @@ impl BeamAtRest {
         } else {
             (
                 format!(
-                    "nothing touches or drives it, and it starts in equilibrium, deflected by {deflection:.3e} m, so its forces are 0 to rounding"
+                    "nothing touches or drives it, and it starts in equilibrium, deflected by {}, so its forces are 0 to rounding",
+                    with_unit(deflection, "m")
                 ),
                 Some(format!(
-                    "{:.1e} m, a thousand times its deflection due to the rounding of its forces",
-                    self.trembles
+                    "{}, a thousand times its deflection due to the rounding of its forces",
+                    with_digits(self.trembles, "m", 2)
                 )),
             )
         };

@@ -11,6 +11,7 @@ use super::{InactivePairs, InitialMotion, Limits, Removed};
 use crate::scene::{ContactScene, SupportingBody};
 use teeter_beam::{Axial, Beam, MatrixWeights};
 use teeter_integrator::{BeamFace, ImpactLaw};
+use teeter_text::readable::with_digits;
 
 /// The proof that no block tips over, with its numbers (`docs/required.md` §3).
 #[derive(Debug, Clone, PartialEq)]
@@ -348,13 +349,13 @@ impl Barrier {
             what: format!("contact `{}`: the upper corners of `{name}`", contact.name),
             why: format!(
                 "the total energy is {:.6} J, and {:.6} J would be needed to tilt `{name}` by its critical angle, {:.2} deg; up to {:.6} J it stays \
-                 within {:.2} deg. The run watches that, and that penetration stays under {:.1e} m",
+                 within {:.2} deg. The run watches that, and that penetration stays under {}",
                 self.energy,
                 well.barrier,
                 well.critical_angle.to_degrees(),
                 self.limits.energy,
                 well.angle.to_degrees(),
-                self.limits.penetration
+                with_digits(self.limits.penetration, "m", 2)
             ),
             accuracy: None,
         }

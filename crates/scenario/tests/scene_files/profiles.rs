@@ -194,7 +194,7 @@ fn a_profile_excludes_an_incline_and_needs_its_points_in_order() {
     // Placed in the ground.
     let text = scene("10 ms", "1 ms", "[['0 m', '0 m'], ['1 m', '1 m']]", "position = ['3 m', '1.5 m']", 0.5);
     let message = Simulation::new(&resolved(&text).scene).unwrap_err().to_string();
-    assert!(message.contains("the corner bottom-left starts 5e-1 m below the surface of `ground`"), "{message}");
+    assert!(message.contains("the corner bottom-left starts 500 mm below the surface of `ground`"), "{message}");
 }
 
 /// A block of any shape, given by `keys`, on this ground.

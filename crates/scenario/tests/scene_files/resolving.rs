@@ -102,7 +102,7 @@ fn a_corner_that_starts_inside_a_surface() {
         ("tilt     =", "# tilt ="),
         ("start     = \"static\"", "start = \"undeformed\""),
     ]);
-    says(&message, &["block `rocker`", "bottom-left", "1.0", "e-3 m below", "table"]);
+    says(&message, &["block `rocker`", "bottom-left", "1 mm below", "table"]);
 }
 
 #[test]

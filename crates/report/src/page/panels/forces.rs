@@ -7,7 +7,7 @@ use crate::page::recorder::{ENERGIES, PageRecorder};
 use crate::sections::Kind;
 
 impl Panels {
-    /// Slip of the contacts; and whether their tangential forces are worth a plot.
+    /// Slip of the contacts; and whether their forces are worth a plot. Those that aren't are dropped.
     pub(super) fn contacts(&mut self, recorder: &PageRecorder) {
         let scenery = &recorder.scenery;
         let strongest = largest(self.forces.iter().flatten().flat_map(|forces| &forces.normal));
@@ -21,10 +21,16 @@ impl Panels {
             if points.is_empty() {
                 continue;
             }
-            let force = largest(points.iter().flat_map(|(_, _, forces)| &forces.tangential));
-            self.tangential[pair] = holds(force, strongest);
             let name = format!("{} on {}", scenery.blocks[contact.block].name, contact.surface);
             let of = || several.then(|| (name.clone(), "contacts"));
+            let normal = largest(points.iter().flat_map(|(_, _, forces)| &forces.normal));
+            if !holds(normal, strongest) {
+                left_out.push(("force of", of(), normal, "N"));
+                self.forces[contact.first..contact.first + contact.points.len()].fill(None);
+                continue;
+            }
+            let force = largest(points.iter().flat_map(|(_, _, forces)| &forces.tangential));
+            self.tangential[pair] = holds(force, strongest);
             if !self.tangential[pair] {
                 left_out.push(("tangential force", of(), force, "N"));
             }

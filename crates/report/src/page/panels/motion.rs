@@ -1,8 +1,9 @@
 //! Plots of how blocks, beams, ground and supports move.
 
-use super::{Line, Panels, Place, Portrait, TimePanel, length_unit};
+use super::{Line, Panels, Place, Portrait, PortraitLine, TimePanel, length_unit};
 use crate::page::content::{ROUNDING, holds, largest, travel};
-use crate::page::recorder::{BLOCK_COLUMNS, PageRecorder};
+use crate::page::orbit::Point;
+use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, PageRecorder};
 use std::collections::BTreeSet;
 
 /// A coordinate of a block.
@@ -47,6 +48,9 @@ const COORDINATES: [Coordinate; 3] = [
     },
 ];
 const PHI: usize = 2;
+
+/// Most points of all phase portraits together.
+const PORTRAIT_POINTS: usize = 8000;
 
 /// A block that turns by this part of what it moves otherwise has φ in its phase portrait.
 const TURNS: f64 = 0.01;
@@ -245,18 +249,25 @@ impl Panels {
             if blocks().next().is_none() {
                 continue;
             }
-            let samples = |k: usize, column: usize| self.curves.samples(BLOCK_COLUMNS * k + column);
+            let points =
+                |k: usize| recorder.kept.orbits[BLOCK_COORDINATES * k + c].points(PORTRAIT_POINTS / chosen.len());
+            let orbits: Vec<(usize, Vec<Point>)> = blocks().map(|k| (k, points(k))).collect();
             let (units, factors) = if c == PHI {
                 ([display.angle.symbol(), "rad"], [display.angle.per_radian(), 1.0])
             } else {
-                let most = |of: usize| blocks().map(|k| largest(&samples(k, of))).fold(0.0, f64::max);
-                let [(x, a), (v, b)] = [c, 3 + c].map(|of| length_unit(display.length, most(of)));
+                let most = |of: usize| largest(orbits.iter().flat_map(|(_, points)| points).map(|point| &point[of]));
+                let [(x, a), (v, b)] = [1, 2].map(|of| length_unit(display.length, most(of)));
                 ([x, v], [a, b])
             };
-            let line = |k: usize| {
-                let [x, y] = [c, 3 + c].map(|column| samples(k, column));
-                let scaled = |values: Vec<f64>, factor: f64| values.into_iter().map(|x| x * factor).collect();
-                (block_label(recorder, k), k, scaled(x, factors[0]), scaled(y, factors[1]))
+            let line = |(k, points): (usize, Vec<Point>)| {
+                let values = |of: usize, factor: f64| points.iter().map(|point| point[of] * factor).collect();
+                PortraitLine {
+                    label: block_label(recorder, k),
+                    number: k,
+                    t: values(0, 1.0),
+                    x: values(1, factors[0]),
+                    v: values(2, factors[1]),
+                }
             };
             let coordinate = &COORDINATES[c];
             let reach = blocks().map(|k| recorder.scenery.blocks[k].reach).fold(0.0, f64::max);
@@ -273,7 +284,7 @@ impl Panels {
                 y_unit: format!("{}/s", units[1]),
                 least: if c == PHI { [4e-5 * factors[0], 2e-3] } else { factors.map(|factor| 1e-4 * reach * factor) },
                 guides,
-                lines: blocks().map(line).collect(),
+                lines: orbits.into_iter().map(line).collect(),
             };
             self.portraits.push(portrait);
         }
