@@ -139,11 +139,13 @@ fn write_all(comparison: &Comparison, reserved: Reserved, names: &Names<'_>) -> 
     for found in &comparison.channels {
         let (unit, factor) = found.channel.shown();
         let d = found.differences;
+        // What was measured may not move at all.
+        let share =
+            if d.scale > 0.0 { format!(" ({:.1} % of the largest)", 100.0 * d.rms / d.scale) } else { String::new() };
         text += &format!(
-            "{}: root mean square difference {:.3} {unit} ({:.1} % of the largest), at most {:.3} {unit} at t = {:.4} s\n",
+            "{}: root mean square difference {:.3} {unit}{share}, at most {:.3} {unit} at t = {:.4} s\n",
             found.channel.title(),
             factor * d.rms,
-            100.0 * d.rms / d.scale,
             factor * d.max,
             d.max_at
         );

@@ -90,7 +90,7 @@ pub(crate) fn fit(options: &Options) -> Exit {
         }
         Err(error) => {
             console.error(&format!("error: {error}"));
-            return Exit::Failed;
+            return if matches!(error, FitError::Constant(_)) { Exit::BadInput } else { Exit::Failed };
         }
     };
     match write_all(&fitted, reserved, &loaded, options, &block) {

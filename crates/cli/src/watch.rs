@@ -29,7 +29,8 @@ pub(crate) fn watch(mut options: Options) -> Exit {
         // Results of somebody else are not replaced: only those of the runs from here on.
         match exit {
             Exit::BadInput if options.existing == ExistingResults::Refuse && run::has_results(&options) => return exit,
-            Exit::FinishedRun => options.existing = ExistingResults::Replace,
+            // A run that failed has written to its folder, too: the next one shows what mending the scene has changed.
+            Exit::FinishedRun | Exit::Failed => options.existing = ExistingResults::Replace,
             _ => {}
         }
         console.note(&format!("watching {} for changes; Ctrl-C ends", options.scene.display()));

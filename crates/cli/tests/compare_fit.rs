@@ -339,6 +339,12 @@ fn bad_measured_tables_are_refused_with_their_line() {
     refused(&["compare", "run", "good.csv", "--window", "4"], "an odd number of rows");
     refused(&["compare", "run", "good.csv", "--shift", "100 s"], "fewer than 8 rows in common");
     let fit = |vary: &str, says: &str| refused(&["fit", &scene, "good.csv", "--out", "out", "--vary", vary], says);
+    let still: String = (0..20).map(|k| format!("{},0.0{k},0\n", 0.01 * f64::from(k))).collect();
+    std::fs::write(folder.join("still.csv"), format!("t,phi,x\n{still}")).unwrap();
+    refused(
+        &["fit", &scene, "still.csv", "--out", "out", "--vary", "contact.feet.friction=0.2..0.9"],
+        "Position x is the same in all rows of the table",
+    );
     fit("contact.feet.friction=0.9..0.2", "the lower bound of contact.feet.friction must be below the upper one");
     fit("contact.feet.friction=-1..0.2", "must be at least 0");
     fit("contact.feet.fricton=0.1..0.2", "did you mean `contact.feet.friction`?");

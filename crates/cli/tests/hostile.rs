@@ -250,7 +250,7 @@ fn force_leaves_nothing_of_an_earlier_run_but_what_others_put_there() {
     std::fs::write(at.join("moving.toml"), moving).unwrap();
     done(&at, &["run", "moving.toml", "--out", "out", "--vtk"]);
     let before = files_of(&at.join("out"));
-    for figure in ["figures/x.svg", "figures/phase_y.svg", "vtk/picture-0000.vtu"] {
+    for figure in ["figures/vx.svg", "figures/phase_x.svg", "vtk/picture-0000.vtu"] {
         assert!(before.contains(&figure.into()), "{figure} is not among {before:?}");
     }
     std::fs::write(at.join("out/figures/mine.svg"), "mine").unwrap();

@@ -336,7 +336,7 @@ fn a_run_warns_of_far_turns_and_of_an_account_that_does_not_hold() {
             "wound-up",
             "position = [\"0 m\", \"1 m\"]\nmotion = { angular_acceleration = \"1000 rad/s^2\" }",
             "far-turn",
-            "`b` turns by 0.10 rad in the step to t = 0.1",
+            "`b` turns by 0.10 rad in the step to t = 100 ms",
         ),
         ("far-off", "position = [\"0 m\", \"1e9 m\"]", "energy-account", "far more than rounding"),
     ] {
@@ -369,6 +369,6 @@ fn a_run_warns_of_a_landing_that_hangs_on_bounces_that_were_cut_short() {
         let output = teeter(&folder, &["run", "scene.toml", "--out", scheme, "--set", &sets]);
         assert!(output.status.success(), "{}", stderr(&output));
         let said = stderr(&output);
-        assert_eq!(said.contains("contact `c`: bottom-left landed at t = 0.0458"), told, "{scheme}: {said}");
+        assert_eq!(said.contains("contact `c`: bottom-left landed at t = 45.8"), told, "{scheme}: {said}");
     }
 }

@@ -103,7 +103,7 @@ fn a_table_has_a_row_for_each_file_and_solver() {
         ]
     );
     // ‖H − Hᵀ‖ / ‖H‖ = √(2 · 4 · 0.01²) / √(6 + 4 · 0.01²), for the asymmetric one only.
-    assert_eq!((lines[1].len(), lines[3].len(), lines[3][8]), (8, 9, "1.2e-2"));
+    assert_eq!((lines[1].len(), lines[3].len(), lines[3][8]), (8, 9, "1e-2"));
 }
 
 #[test]

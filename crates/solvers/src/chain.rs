@@ -193,7 +193,8 @@ impl<const D: usize> Chain<D> {
         let mut outcome = self.approach(problem, small, pivots, stop, p);
         if is_rough(problem, stop) {
             if outcome.converged() && outcome.iterations <= FIRST_SWEEPS {
-                let further = stop.with_tolerance(AT_REST * stop.tolerance).with_max_iterations(SWEEPS_AT_REST);
+                let left = stop.max_iterations.saturating_sub(outcome.iterations).min(SWEEPS_AT_REST);
+                let further = stop.with_tolerance(AT_REST * stop.tolerance).with_max_iterations(left);
                 // It returns the best impulses that it meets, the start among them.
                 let refined = self.pgs.solve(problem, &further, p);
                 outcome.iterations = outcome.iterations.saturating_add(refined.iterations);

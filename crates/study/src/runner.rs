@@ -4,6 +4,9 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+/// More threads than any machine has a use for here; a request for more may be refused by the system.
+const MOST_THREADS: usize = 512;
+
 /// Number of hardware threads.
 #[must_use]
 pub fn cores() -> usize {
@@ -58,7 +61,7 @@ pub fn as_they_end<J: Send, R: Send>(
         if ended { None } else { jobs.lock().unwrap_or_else(PoisonError::into_inner).next() }
     };
     std::thread::scope(|scope| {
-        for _ in 0..threads.max(1) {
+        for _ in 0..threads.clamp(1, MOST_THREADS) {
             scope.spawn(|| {
                 while let Some(job) = next() {
                     let result = work(&job);

@@ -97,6 +97,17 @@ pub enum FitError {
     /// The motions can't be compared.
     #[error(transparent)]
     Compare(#[from] crate::compare::CompareError),
+    /// A measured quantity that never changes.
+    #[error("{0} is the same in all rows of the table, so that its noise is unknown: leave the column out")]
+    Constant(&'static str),
+    /// Too few rows, or no trial values that give a motion.
+    #[error("up to t = {0:.4} s no values in the ranges give a motion with 8 measured numbers or more to compare")]
+    NothingToCompare(f64),
+    /// No runs beside the fitted values.
+    #[error(
+        "the best values are {0}, but runs beside them fail, so that they have no confidence: choose narrower ranges"
+    )]
+    NoConfidence(String),
     /// Ended by the user.
     #[error("interrupted")]
     Interrupted,
@@ -172,13 +183,24 @@ impl Fit {
             for (share, reach) in EXTENSIONS {
                 objective.until = share * until;
                 let polish = share == 1.0;
-                best = improve(&objective, &best, reach, polish, settings.threads, &mut evaluations, report)?;
-                best = distinct(best, reach);
+                match improve(&objective, &best, reach, polish, settings.threads, &mut evaluations, report) {
+                    Ok(found) => best = distinct(found, reach),
+                    // So few rows that the beginning has hardly any.
+                    Err(FitError::NothingToCompare(_)) if !polish => {}
+                    Err(error) => return Err(error),
+                }
             }
         }
         let fitted = &best[0];
         let setting = objective.setting(&fitted.at);
-        let found = confidence::of(&objective, fitted).ok_or(FitError::Interrupted)?;
+        let Some(found) = confidence::of(&objective, fitted) else {
+            if objective.cancel.load(std::sync::atomic::Ordering::Relaxed) {
+                return Err(FitError::Interrupted);
+            }
+            let values =
+                keys.iter().zip(&fitted.at).map(|(key, share)| format!("{} = {}", key.key(), key.text(key.at(*share))));
+            return Err(FitError::NoConfidence(values.collect::<Vec<_>>().join(", ")));
+        };
         let compared = |trace, shift, offset| {
             let alignment = AlignmentSettings { shift: Some(shift), sign: Some(objective.sign) };
             // The zero of the angle was taken in the turned motion.
@@ -266,6 +288,14 @@ fn search<'a>(
     };
     let signs = settings.alignment.sign.map_or(vec![Sign::AsIs, Sign::Reversed], |sign| vec![sign]);
     let objectives: Vec<Objective<'_>> = signs.into_iter().map(objective).collect();
+    let still = |values: &[f64]| {
+        let mut seen = values.iter().filter(|value| value.is_finite());
+        let first = seen.next();
+        seen.all(|value| Some(value) == first)
+    };
+    if let Some((channel, _)) = objectives[0].motion.channels.iter().find(|(_, values)| still(values)) {
+        return Err(FitError::Constant(channel.title()));
+    }
     let count = settings.samples.unwrap_or(16 * (keys.len() + 1)).clamp(1, 10_000);
     let sampler =
         Sampler::new(settings.seed, Method::LatinHypercube, keys.len(), u32::try_from(count).unwrap_or(u32::MAX));
@@ -384,8 +414,13 @@ fn improve(
     best.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let Some(first) = best.first().cloned().filter(|_| polish) else {
         evaluations.extend(tried.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner));
-        let cancelled = best.is_empty() || objective.cancel.load(std::sync::atomic::Ordering::Relaxed);
-        return if cancelled { Err(FitError::Interrupted) } else { Ok(best) };
+        return if objective.cancel.load(std::sync::atomic::Ordering::Relaxed) {
+            Err(FitError::Interrupted)
+        } else if best.is_empty() {
+            Err(FitError::NothingToCompare(objective.until))
+        } else {
+            Ok(best)
+        };
     };
     // A rough function may stop a method that needs derivatives.
     let dimensions = objective.keys.len();

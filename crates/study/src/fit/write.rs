@@ -140,7 +140,7 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
         format!("what is left is {} times the noise of the samples", short(left))
     });
     texts.push(match fit.restarts.get(1) {
-        None => format!("all starts led to the same values; {} runs were made", fit.evaluations.len()),
+        None => format!("no start led to other values; {} runs were made", fit.evaluations.len()),
         Some((_, cost)) => format!(
             "starts led to {} different values; the second best leave {} times the noise; {} runs were made",
             fit.restarts.len(),
@@ -167,7 +167,13 @@ pub fn page(fit: &Fit, title: &str, names: [&str; 3]) -> Result<String, AxisErro
     let mut html = String::new();
     let rows = fit.estimates.iter().filter(|found| found.value.is_finite()).map(|found| {
         let (low, high) = found.interval();
-        let number = |value: f64| escaped(&format!("{value:.5}")).replace('-', "\u{2212}");
+        // As many decimals as the error leaves, and one more.
+        let decimals = if found.standard_error > 0.0 && found.standard_error.is_finite() {
+            (2 - found.standard_error.log10().floor() as i32).clamp(0, 15) as usize
+        } else {
+            5
+        };
+        let number = |value: f64| escaped(&format!("{value:.decimals$}")).replace('-', "\u{2212}");
         vec![
             format!("<code>{}</code>", escaped(&found.name)),
             format!("{} {}", number(found.value), escaped(&found.unit)),

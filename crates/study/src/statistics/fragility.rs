@@ -86,6 +86,9 @@ impl LognormalFit {
                 _ => "the event comes in no case",
             }));
         };
+        if without_least == with_most && below == above {
+            return Err(NoFit::OneSided("all cases have the same intensity"));
+        }
         if below <= above {
             return Err(NoFit::Separated { below, above });
         }

@@ -164,7 +164,8 @@ impl Journal {
         }
         let mut done = Done::default();
         for line in String::from_utf8_lossy(&bytes[..whole]).lines() {
-            if let Some(case) = number_of(line) {
+            // Any other number is none of this study's.
+            if let Some(case) = number_of(line).filter(|&case| case < sweep.cases()) {
                 done.insert(case);
             }
         }
@@ -205,10 +206,13 @@ fn number_of(line: &str) -> Option<u64> {
 }
 
 /// Sorts rows by their case. A case that ran twice, as after a kill between its row and the next
-/// start, keeps its first row.
+/// start, keeps its first row. A last row without its end was cut off: it is none.
 fn sorted<'t>(texts: impl Iterator<Item = &'t str>) -> Vec<(u64, &'t str)> {
-    let mut rows: Vec<(u64, &str)> =
-        texts.flat_map(|text| text.split_inclusive('\n')).filter_map(|line| Some((number_of(line)?, line))).collect();
+    let mut rows: Vec<(u64, &str)> = texts
+        .flat_map(|text| text.split_inclusive('\n'))
+        .filter(|line| line.ends_with('\n'))
+        .filter_map(|line| Some((number_of(line)?, line)))
+        .collect();
     rows.sort_by_key(|(case, _)| *case);
     rows.dedup_by_key(|(case, _)| *case);
     rows
@@ -223,6 +227,9 @@ pub fn write_results(results: &Results, sweep: &Sweep) -> Result<(), JournalErro
     let path = results.folder().join(JOURNAL);
     let text = fs::read_to_string(&path).map_err(io_error(&path))?;
     results.write(RESULTS, table(&sweep.header(), &sorted(std::iter::once(text.as_str()))))?;
+    // On the disk before its only other copy goes: a power cut must not take a study.
+    let table = results.folder().join(RESULTS);
+    File::open(&table).and_then(|file| file.sync_all()).map_err(io_error(&table))?;
     Ok(results.remove(JOURNAL)?)
 }
 

@@ -31,6 +31,10 @@ impl WrittenNumber {
 
     /// The text of another number in the same unit, for `--set`.
     pub(crate) fn text_of(&self, value: f64) -> String {
+        // Keys that take whole numbers refuse `10.0`; all others take `10`.
+        if self.unit.is_empty() && value.fract() == 0.0 && value.abs() < 1e15 {
+            return format!("{value:.0}");
+        }
         if self.unit.is_empty() { format!("{value:?}") } else { format!("{value:?} {}", self.unit) }
     }
 }
@@ -63,6 +67,11 @@ mod tests {
         assert_eq!(read("3 eV"), Some((3.0, "eV".into())));
         assert_eq!(read("auto"), None);
         assert_eq!(WrittenNumber::read("2 mm").unwrap().text_of(0.25), "0.25 mm");
+        let whole = WrittenNumber::read("10").unwrap();
+        assert_eq!(
+            (whole.text_of(20.0), whole.text_of(2.5), whole.text_of(1e300)),
+            ("20".into(), "2.5".into(), "1e300".into())
+        );
     }
 
     #[test]

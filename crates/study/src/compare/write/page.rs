@@ -86,12 +86,13 @@ fn quantity_row(found: &ChannelComparison) -> Vec<String> {
     let (unit, factor) = found.channel.shown();
     let d = found.differences;
     let value = |x: f64| format!("{} {unit}", short(factor * x)).replace('-', "\u{2212}");
+    let share = |x: f64| if d.scale > 0.0 { percent(x / d.scale) } else { "–".to_owned() };
     vec![
         found.channel.title().to_owned(),
         value(d.rms),
-        percent(d.rms / d.scale),
+        share(d.rms),
         value(d.max),
-        percent(d.max / d.scale),
+        share(d.max),
         format!("{} s", fixed(d.max_at, 4)),
         value(d.mean),
         if found.is_measured { value(found.measured.noise) } else { "–".to_owned() },
