@@ -43,11 +43,6 @@ fn drawn(draw: &mut Draw) -> Vec<Known> {
         .collect();
     let values = (0..rows).map(|_| draw.within(-3.0, 3.0)).collect();
     let formula = |made: Result<Formula, SignalError>| -> Arc<dyn Signal> { Arc::new(made.unwrap()) };
-    let chirp = |start, duration, frequencies, phase, growth| -> Arc<dyn Signal> {
-        Arc::new(Chirp::new(start, duration, frequencies, phase, growth).unwrap())
-    };
-    let sine = formula(Formula::harmonic(start, frequency, phase));
-    let chirped = chirp(start, duration, [0.5 * frequency, frequency], 0.0, Growth::Logarithmic);
     vec![
         (formula(Formula::constant(start)), vec![start], 1.0),
         (formula(Formula::ramp(start, duration)), vec![start, start + duration], 1.0),
@@ -56,17 +51,6 @@ fn drawn(draw: &mut Draw) -> Vec<Known> {
         (formula(Formula::half_sine(start, duration)), vec![start, start + duration], 0.1 * duration),
         (formula(Formula::ricker(start, frequency)), vec![start - 3.0 / frequency, start + 3.0 / frequency], slow),
         (Arc::new(Table::new(times.clone(), values).unwrap()), times, 1.0),
-        (
-            chirp(start, duration, [frequency, 0.1 * frequency], phase, Growth::Linear),
-            vec![start, start + duration],
-            slow,
-        ),
-        (
-            chirp(start, duration, [0.3 * frequency, frequency], phase, Growth::Logarithmic),
-            vec![start, start + duration],
-            slow,
-        ),
-        (Arc::new(Sum::new(vec![(0.7, sine), (-1.3, chirped)])), vec![start, start + duration], slow),
     ]
 }
 
