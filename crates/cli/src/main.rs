@@ -424,7 +424,7 @@ Both motions go through the same sampling and smoothing before rates are compare
 markers and results.";
 
 const FIT_HELP: &str = "Examples:
-  teeter fit rocking.toml camera.csv --vary contact.feet.restitution=0..0.8
+  teeter fit rocking.toml camera.csv --vary beam.table.damping_ratio.ratio=0.001..0.1
   teeter fit rocking.toml camera.csv --vary contact.feet.friction=0.1..1 --vary beam.table.thickness=\"1 mm..3 mm\"
 
 The time shift and the zero of the measured angle are fitted too, unless given. docs/fit.md describes the method and the
@@ -449,8 +449,18 @@ fn explain(error: &clap::Error) -> ExitCode {
     }
 }
 
+/// The words of the command line; `help --help`, which clap takes for a command named `--help`, asks
+/// for what `help` prints.
+fn words(given: impl Iterator<Item = std::ffi::OsString>) -> Vec<std::ffi::OsString> {
+    let mut words: Vec<_> = given.collect();
+    if words.len() == 3 && words[1] == "help" && (words[2] == "--help" || words[2] == "-h") {
+        words.pop();
+    }
+    words
+}
+
 fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    let arguments = match Arguments::try_parse_from(words(std::env::args_os())) {
         Ok(arguments) => arguments,
         Err(error) => return explain(&error),
     };

@@ -195,6 +195,7 @@ fn of_kind_alone(key: &Key) -> Value {
         Kind::WordOrTable(words, keys) => word_or_table(words, keys, rules::of_start()),
         Kind::WordOrTablePair(words, keys) => pair(word_or_table(words, keys, rules::of_support())),
         Kind::ChoicePair(words) => pair(json!({ "enum": words })),
+        Kind::Names => json!({ "type": "array", "items": { "$ref": "#/$defs/name" }, "minItems": 1 }),
         Kind::NamePair => pair(json!({ "$ref": "#/$defs/name" })),
         Kind::PatternPair => pair(json!({ "type": "string", "pattern": PATTERN })),
         Kind::PatternPairs => {

@@ -372,3 +372,15 @@ fn a_run_warns_of_a_landing_that_hangs_on_bounces_that_were_cut_short() {
         assert_eq!(said.contains("contact `c`: bottom-left landed at t = 45.8"), told, "{scheme}: {said}");
     }
 }
+
+#[test]
+fn help_of_help_is_the_help() {
+    let printed = |words: &[&str]| {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_teeter")).args(words).output().unwrap();
+        assert!(output.status.success(), "{words:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let help = printed(&["help"]);
+    assert!(help.contains("Usage: teeter"), "{help}");
+    assert_eq!([printed(&["help", "--help"]), printed(&["help", "-h"])], [help.clone(), help]);
+}

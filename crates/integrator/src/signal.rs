@@ -1,17 +1,23 @@
 //! Time histories of loads and of prescribed motion (`docs/signals.md`).
 //!
 //! A [`Signal`] is a number without unit that depends on time, with its rate and its first two
-//! integrals, each in closed form: whichever of displacement, velocity and acceleration is given, a
-//! [`Motion`] has the others without summing over steps.
+//! integrals, each in closed form (those of a [`Chirp`] by quadrature to rounding): whichever of
+//! displacement, velocity and acceleration is given, a [`Motion`] has the others without summing over
+//! steps.
 
+mod chirp;
 mod formula;
 mod motion;
+mod sum;
 mod table;
 pub(crate) mod window;
 
+pub use chirp::{Chirp, Growth};
 pub use formula::Formula;
 pub use motion::{Given, Motion};
+pub use sum::Sum;
 pub use table::Table;
+use window::Moments;
 
 /// A time history without unit; the amplitude by which it is multiplied has one.
 ///

@@ -253,7 +253,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
         let title = doc.text("title").unwrap_or(stem).to_owned();
         let gravity = self.pair("world.gravity");
         // Each part is resolved even if others have failed, so that all errors are found.
-        let signals: Vec<_> = doc.names("signal").into_iter().map(|name| self.signal(name)).collect();
+        let signals = self.all_signals();
         let ground = self.ground(&signals);
         let mut beams: Vec<_> = doc.names("beam").into_iter().map(|name| self.beam(name, &signals)).collect();
         if self.mesh_sizes(&beams) {

@@ -108,7 +108,7 @@ impl Scene {
     pub fn records(&self) -> impl Iterator<Item = &Arc<RecordScene>> {
         self.motions().flat_map(|(_, motion)| motion.0.iter().flatten()).filter_map(|axis| match &axis.history {
             History::Record(record) => Some(record),
-            History::Formula(_) | History::Table(_) => None,
+            History::Formula(_) | History::Chirp(_) | History::Table(_) | History::Sum(_) => None,
         })
     }
 

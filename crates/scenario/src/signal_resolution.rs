@@ -8,7 +8,7 @@ use crate::scene::{AxisScene, ContactScene, History, MotionScene, Scene, SignalS
 use crate::wording::seconds;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use teeter_integrator::{Formula, Given, Signal, Table};
+use teeter_integrator::{Given, Signal, Table};
 
 /// Least number of steps per period of a signal.
 const STEPS_A_SWING: f64 = 10.0;
@@ -39,7 +39,7 @@ const LISTED: usize = 20;
 
 /// Warnings and notes.
 pub(crate) fn of(scene: &Scene, document: &Document) -> (Vec<Diagnostic>, Vec<Diagnostic>) {
-    let used = used(document);
+    let used = used(scene, document);
     let (mut warnings, mut notes) = (Vec::new(), Vec::new());
     let end = scene.time.steps() as f64 * scene.time.step;
     let mut unused = Vec::new();
@@ -48,6 +48,10 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> (Vec<Diagnostic>, Vec<Di
             unused.push(signal.name.as_str());
             continue;
         };
+        // Its terms are checked by themselves.
+        if matches!(signal.history, History::Sum(_)) {
+            continue;
+        }
         let path = format!("signal.{}", signal.name);
         if is_silent(&signal.history, end) {
             let rule = format!("it is 0 during the whole run, which ends at {end} s, and has no effect");
@@ -55,9 +59,11 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> (Vec<Diagnostic>, Vec<Di
             continue;
         }
         warnings.extend(match &signal.history {
-            History::Formula(formula) => swing(&path, formula, used.in_the_mean(), scene, document),
+            History::Formula(_) | History::Chirp(_) => {
+                swing(&path, signal.history.swings(), used.in_the_mean(), scene, document)
+            }
             // Records are not signals.
-            History::Table(_) | History::Record(_) => signal
+            History::Table(_) | History::Record(_) | History::Sum(_) => signal
                 .history
                 .table()
                 .and_then(|table| rows(&format!("{path}.file"), table, used.in_the_mean(), scene, document)),
@@ -101,7 +107,7 @@ impl Used {
 }
 
 /// The names of the signals that are used.
-fn used(document: &Document) -> BTreeMap<&str, Used> {
+fn used<'a>(scene: &Scene, document: &'a Document) -> BTreeMap<&'a str, Used> {
     let mut used = BTreeMap::<&str, Used>::new();
     for (path, _) in document.entries() {
         let (owner, key) = path.rsplit_once('.').unwrap_or(("", path));
@@ -116,6 +122,23 @@ fn used(document: &Document) -> BTreeMap<&str, Used> {
             "signal" => document.text(path).into_iter().for_each(&mut by),
             "signals" => document.text_pair(path).into_iter().flatten().for_each(&mut by),
             _ => {}
+        }
+    }
+    // What multiplies a sum multiplies its terms; a sum's term may be a sum.
+    let sums = || scene.signals.iter().filter(|signal| matches!(signal.history, History::Sum(_)));
+    let mut left: Vec<&str> = sums().map(|sum| sum.name.as_str()).collect();
+    while let Some(sum) = left.pop() {
+        let of_sum = used.get(sum).copied();
+        for term in document.words(&format!("signal.{sum}.terms")).unwrap_or_default() {
+            let before = used.get(term.as_str()).copied();
+            let of_term = used.entry(term).or_default();
+            if let Some(of_sum) = of_sum {
+                of_term.motion |= of_sum.motion;
+                of_term.load |= of_sum.load;
+            }
+            if before.map(|used| (used.motion, used.load)) != Some((of_term.motion, of_term.load)) {
+                left.push(term);
+            }
         }
     }
     used
@@ -137,6 +160,11 @@ fn nothing_uses(names: &[&str], document: &Document) -> Vec<Diagnostic> {
 fn is_silent(history: &History, end: f64) -> bool {
     match history {
         History::Formula(formula) => formula.is_silent_until(end),
+        History::Chirp(chirp) => {
+            let (_, [from, until]) = chirp.swings();
+            from >= end || until <= 0.0
+        }
+        History::Sum(terms) => terms.iter().all(|(_, term)| is_silent(term, end)),
         History::Table(_) | History::Record(_) => history.table().is_none_or(|table| {
             table.value(0.0) == 0.0
                 && table.value(end) == 0.0
@@ -146,14 +174,31 @@ fn is_silent(history: &History, end: f64) -> bool {
 }
 
 /// Warns of a formula with less than ten steps per period.
-fn swing(path: &str, formula: &Formula, in_the_mean: &str, scene: &Scene, document: &Document) -> Option<Diagnostic> {
+fn swing(
+    path: &str,
+    swings: Option<(f64, [f64; 2])>,
+    in_the_mean: &str,
+    scene: &Scene,
+    document: &Document,
+) -> Option<Diagnostic> {
     let step = scene.time.step;
-    let (period, [from, until]) = formula.swings()?;
+    let (period, [from, until]) = swings?;
     if period >= STEPS_A_SWING * step * (1.0 - 1e-9) {
         return None;
     }
     let at = |key: &str| format!("{path}.{key}");
-    let (key, rule) = if document.has(&at("duration")) {
+    let (key, rule) = if let [Some(first), Some(last)] = ["from", "to"].map(|key| document.quantity(&at(key))) {
+        let key = if last > first { at("to") } else { at("from") };
+        (
+            key,
+            format!(
+                "its shortest period of {} is {:.2} steps of {}: {in_the_mean}",
+                seconds(period, 4),
+                period / step,
+                seconds(step, 4)
+            ),
+        )
+    } else if document.has(&at("duration")) {
         let lasts = until - from;
         (
             at("duration"),
@@ -234,18 +279,20 @@ fn turns(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let spins = scene.blocks.iter().map(|block| far(format!("block.{}.spin", block.name), block.spin));
     let driven = |(path, motion): (String, &MotionScene)| {
         let axis = motion.0[2].as_ref()?;
-        let most = match &axis.history {
-            History::Formula(_) => 1.0,
+        let most = |history: &History| match history {
             History::Table(table) => table.rows().map(|(_, y)| y.abs()).fold(0.0, f64::max),
             // Records prescribe no rotation.
-            History::Record(_) => return None,
+            History::Record(_) => 0.0,
+            _ => 1.0,
         };
-        let (key, rate) = match (axis.given, &axis.history) {
-            (Given::Velocity, _) => ("angular_velocity", most),
-            (Given::Displacement, History::Formula(formula)) => {
-                ("angle", formula.swings().map_or(0.0, |(period, _)| std::f64::consts::TAU / period))
-            }
-            _ => return None,
+        let swing = |history: &History| history.swings().map_or(0.0, |(period, _)| std::f64::consts::TAU / period);
+        let sum = |of: &dyn Fn(&History) -> f64| -> f64 {
+            axis.history.terms().map(|(factor, term)| factor.abs() * of(term)).sum()
+        };
+        let (key, rate) = match axis.given {
+            Given::Velocity => ("angular_velocity", sum(&most)),
+            Given::Displacement => ("angle", sum(&swing)),
+            Given::Acceleration => return None,
         };
         far(format!("{path}.{key}"), axis.amplitude * rate)
     };
@@ -260,15 +307,15 @@ fn rises(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         let axes = ["displacement", "displacement", "angle"].into_iter().zip(&motion.0);
         let worst = axes.filter_map(|(key, axis)| {
             let axis = axis.as_ref().filter(|axis| axis.given == Given::Displacement)?;
-            let lasts = match &axis.history {
+            let lasts = axis.history.terms().filter_map(|(_, term)| match term {
                 History::Formula(formula) => {
                     formula.rises_in().filter(|lasts| *lasts < STEPS_A_RISE * step * (1.0 - 1e-9))
                 }
                 History::Table(table) => fastest_rise(table, scene),
-                // Records are accelerations.
-                History::Record(_) => None,
-            };
-            Some((key, lasts?))
+                // Records are accelerations; chirps have their own warning.
+                History::Record(_) | History::Chirp(_) | History::Sum(_) => None,
+            });
+            Some((key, lasts.min_by(f64::total_cmp)?))
         });
         let (key, lasts) = worst.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
         let rule = format!(
@@ -358,6 +405,6 @@ fn fast_starts(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
 
 /// Whether its velocity is constant.
 fn is_uniform(axis: &AxisScene) -> bool {
-    axis.given == Given::Velocity
-        && matches!(&axis.history, History::Formula(formula) if formula.swings().is_none() && formula.rises_in().is_none())
+    let is_constant = |history: &History| matches!(history, History::Formula(formula) if formula.swings().is_none() && formula.rises_in().is_none());
+    axis.given == Given::Velocity && axis.history.terms().all(|(_, term)| is_constant(term))
 }

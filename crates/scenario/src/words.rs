@@ -97,8 +97,12 @@ words! {
         OneSine = "one-sine",
         HalfSine = "half-sine",
         Ricker = "ricker",
+        Chirp = "chirp",
         Table = "table",
+        Sum = "sum",
     }
+    /// How the frequency of a chirp grows.
+    Growth { Linear = "linear", Logarithmic = "logarithmic" }
 }
 
 /// The words of the schemes.
@@ -157,6 +161,7 @@ mod tests {
         each_means_something_of_its_own::<Theory>();
         each_means_something_of_its_own::<Shape>();
         each_means_something_of_its_own::<History>();
+        each_means_something_of_its_own::<Growth>();
         each_means_something_of_its_own::<Baseline>();
         each_means_something_of_its_own::<RecordUnit>();
         each_means_something_of_its_own::<LengthUnit>();

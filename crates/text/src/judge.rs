@@ -119,6 +119,15 @@ impl Judge<'_> {
                 };
                 self.pair_of(key, path, node, read).map(Value::TextPair)
             }
+            Kind::Names => {
+                let read = |judge: &mut Self, item: &Node| judge.name(key, path, item);
+                let names = self.list_of(key, path, node, read)?;
+                if names.is_empty() {
+                    self.blame(node, path, "must have one name or more").remedy = Some(expected(key));
+                    return None;
+                }
+                Some(Value::Words(names))
+            }
             Kind::NamePair => {
                 let read = |judge: &mut Self, item: &Node| judge.name(key, path, item);
                 self.pair_of(key, path, node, read).map(Value::TextPair)

@@ -158,6 +158,8 @@ pub enum Kind {
     WordOrTablePair(&'static [&'static str], &'static [Key]),
     /// An array of tables of some keys.
     Tables(&'static [Key]),
+    /// An array of one or more names.
+    Names,
     /// An array of two names.
     NamePair,
     /// An array of two names, in which a `*` stands for any characters and a `?` for one.

@@ -364,11 +364,11 @@ fn wavelet_mean(rate: f64, a: f64, b: f64) -> f64 {
     (-y).exp() - 2.0 * a * (-0.5 * (x + y)).exp() * apart.sinh() / (b - a)
 }
 
-fn finite(what: &'static str, value: f64) -> Result<f64, SignalError> {
+pub(super) fn finite(what: &'static str, value: f64) -> Result<f64, SignalError> {
     if value.is_finite() { Ok(value) } else { Err(SignalError::Value { what, value, rule: "finite" }) }
 }
 
-fn positive(what: &'static str, value: f64) -> Result<f64, SignalError> {
+pub(super) fn positive(what: &'static str, value: f64) -> Result<f64, SignalError> {
     // Written so that NaN fails too.
     if value > 0.0 && value.is_finite() {
         Ok(value)

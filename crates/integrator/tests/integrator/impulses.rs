@@ -98,7 +98,32 @@ fn steps(draw: &mut Draw, kinks: &[f64]) -> Vec<[f64; 2]> {
 
 #[test]
 fn means_of_signals_rates_integrals_and_moments_are_exact_over_any_step() {
-    let mut draw = Draw(7);
+    means_are_exact(Draw(7), drawn);
+}
+
+/// Chirps and sums. They start at 0 or later, as the digits of a time since the start are counted by
+/// the time.
+fn drawn_composed(draw: &mut Draw) -> Vec<Known> {
+    let (start, duration) = (draw.within(0.0, 1.0), draw.within(0.01, 1.0));
+    let (frequency, phase) = (10_f64.powf(draw.within(-1.0, 3.0)), draw.within(0.0, 6.0));
+    // The points that check must be close for the growth of the frequency, too.
+    let (kinks, slow) = (vec![start, start + duration], (0.05 / frequency).min(0.02 * duration));
+    let chirp = |frequencies, growth| -> Arc<dyn Signal> {
+        Arc::new(Chirp::new(start, duration, frequencies, phase, growth).unwrap())
+    };
+    let falling = chirp([frequency, 0.1 * frequency], Growth::Linear);
+    let rising = chirp([0.3 * frequency, frequency], Growth::Logarithmic);
+    let sine: Arc<dyn Signal> = Arc::new(Formula::harmonic(start, frequency, phase).unwrap());
+    let sum = Sum::new(vec![(0.7, sine), (-0.3, Arc::clone(&rising))]);
+    vec![(falling, kinks.clone(), slow), (rising, kinks.clone(), slow), (Arc::new(sum), kinks, slow)]
+}
+
+#[test]
+fn means_of_chirps_and_sums_are_exact_over_any_step() {
+    means_are_exact(Draw(11), drawn_composed);
+}
+
+fn means_are_exact(mut draw: Draw, drawn: impl Fn(&mut Draw) -> Vec<Known>) {
     for _ in 0..40 {
         for (signal, kinks, fine) in drawn(&mut draw) {
             for [from, to] in steps(&mut draw, &kinks) {

@@ -138,6 +138,12 @@ impl Resolver<'_, '_> {
             let signal = signals.get(*number)?.as_ref()?;
             return Some(Factor { history: signal.history.clone(), scale: signal.scale });
         }
+        self.not_defined(path, name);
+        None
+    }
+
+    /// Reports the name of a signal that there isn't.
+    pub(super) fn not_defined(&mut self, path: &str, name: &str) {
         if !self.doc.is_refused("signal") {
             let known = self.doc.names("signal");
             let remedy = if known.is_empty() {
@@ -149,7 +155,6 @@ impl Resolver<'_, '_> {
             self.error(path, format!("the signal `{name}` is not defined"), remedy);
             self.suggest(near);
         }
-        None
     }
 
     fn axis(&mut self, path: &str, given: Given, amplitude: f64, factor: Factor) -> Option<AxisScene> {

@@ -2,17 +2,21 @@
 
 use std::sync::Arc;
 
-use teeter_integrator::{Formula, Given, Motion, Signal, SignalError, Table};
+use teeter_integrator::{Chirp, Formula, Given, Motion, Signal, SignalError, Sum, Table};
 
 /// A time history.
 #[derive(Debug, Clone, PartialEq)]
 pub enum History {
     /// By formula.
     Formula(Formula),
+    /// By a sine of changing frequency.
+    Chirp(Chirp),
     /// By rows.
     Table(Arc<Table>),
     /// By a recorded acceleration, m/s²: its amplitude is 1 m/s².
     Record(Arc<RecordScene>),
+    /// By a sum of histories that are not sums, each with its factor.
+    Sum(Arc<[(f64, History)]>),
 }
 
 impl History {
@@ -21,8 +25,12 @@ impl History {
     pub fn signal(&self) -> Arc<dyn Signal> {
         match self {
             Self::Formula(formula) => Arc::new(*formula),
+            Self::Chirp(chirp) => Arc::new(chirp.clone()),
             Self::Table(table) => Arc::clone(table) as Arc<dyn Signal>,
             Self::Record(record) => Arc::clone(&record.table) as Arc<dyn Signal>,
+            Self::Sum(terms) => {
+                Arc::new(Sum::new(terms.iter().map(|(factor, term)| (*factor, term.signal())).collect()))
+            }
         }
     }
 
@@ -31,8 +39,30 @@ impl History {
     pub fn settles_at(&self) -> f64 {
         match self {
             Self::Formula(formula) => formula.settles_at(),
+            Self::Chirp(chirp) => chirp.settles_at(),
             Self::Table(table) => table.ends()[1].0,
             Self::Record(record) => record.table.ends()[1].0,
+            Self::Sum(terms) => terms.iter().map(|(_, term)| term.settles_at()).fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+
+    /// Its terms with their factors: those of a sum, otherwise itself.
+    pub fn terms(&self) -> impl Iterator<Item = (f64, &History)> {
+        let (sum, whole) = match self {
+            Self::Sum(terms) => (Some(terms.iter().map(|(factor, term)| (*factor, term))), None),
+            _ => (None, Some((1.0, self))),
+        };
+        sum.into_iter().flatten().chain(whole)
+    }
+
+    /// The shortest period of its oscillation, and between which times it oscillates, s; `None` if it
+    /// doesn't, or not by a formula.
+    #[must_use]
+    pub fn swings(&self) -> Option<(f64, [f64; 2])> {
+        match self {
+            Self::Formula(formula) => formula.swings(),
+            Self::Chirp(chirp) => Some(chirp.swings()),
+            Self::Table(_) | Self::Record(_) | Self::Sum(_) => None,
         }
     }
 
@@ -40,7 +70,7 @@ impl History {
     #[must_use]
     pub fn table(&self) -> Option<&Table> {
         match self {
-            Self::Formula(_) => None,
+            Self::Formula(_) | Self::Chirp(_) | Self::Sum(_) => None,
             Self::Table(table) => Some(table),
             Self::Record(record) => Some(&record.table),
         }

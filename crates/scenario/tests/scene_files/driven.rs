@@ -325,3 +325,107 @@ fn paths_are_rewritten_where_they_are_paths() {
     let refused = load(text.as_bytes(), "scene.toml", "scene", &[]).unwrap_err().to_string();
     assert!(refused.contains("signal.s.file") && refused.contains("other files can't be read here"), "{refused}");
 }
+
+const PUSHED: &str = "[force.f]\non = 'b'\nforce = ['3 N', '0 N']\nsignal = 's'\n";
+
+const TERMS: &str = "
+[signal.s]
+shape = 'sum'
+terms = ['slow', 'both', 'slow']
+scale = 2
+[signal.both]
+shape = 'sum'
+terms = ['ramp', 'swept']
+scale = -0.5
+[signal.slow]
+shape = 'harmonic'
+frequency = '0.7 Hz'
+phase = '90 deg'
+[signal.ramp]
+shape = 'ramp'
+duration = '0.4 s'
+scale = 3
+[signal.swept]
+shape = 'chirp'
+from = '1 Hz'
+to = '12 Hz'
+duration = '0.8 s'
+growth = 'logarithmic'
+";
+
+#[test]
+fn a_sum_pushes_as_its_terms_do() {
+    let sum = free_block("1 s", &format!("{PUSHED}{TERMS}"));
+    // 2 (2 slow − ½ (3 ramp + swept))
+    let apart = |name: &str, signal: &str, force: f64| {
+        format!("[force.{name}]\non = 'b'\nforce = ['{force} N', '0 N']\nsignal = '{signal}'\n")
+    };
+    let forces = [apart("f", "slow", 12.0), apart("g", "ramp", -3.0), apart("h", "swept", -3.0)].concat();
+    let terms = TERMS.split_once("[signal.slow]").unwrap().1;
+    let parts = free_block("1 s", &format!("{forces}[signal.slow]{terms}"));
+    assert!(sum.state.v[0].abs() > 0.1);
+    for (sum, parts) in [(&sum.state.v, &parts.state.v), (&sum.state.q, &parts.state.q)] {
+        assert!((sum[0] - parts[0]).abs() < 1e-14, "{} {}", sum[0], parts[0]);
+    }
+}
+
+#[test]
+fn a_chirp_leaves_its_impulse_whatever_the_step() {
+    let push = "[signal.s]\nshape = 'chirp'\nfrom = '2 Hz'\nto = '10 Hz'\nduration = '0.5 s'\nstart = '0.1 s'\n";
+    let run = free_block("1 s", &format!("{PUSHED}{push}"));
+    // ∫ sin(2π(2τ + 8τ²)) by Simpson's rule.
+    let value = |t: f64| (TAU * (2.0 * t + 8.0 * t * t)).sin();
+    let (n, h) = (100_000_u32, 0.5 / 2e5);
+    let area: f64 = (0..n)
+        .map(|k| {
+            let t = 2.0 * h * f64::from(k);
+            h / 3.0 * (value(t) + 4.0 * value(t + h) + value(t + 2.0 * h))
+        })
+        .sum();
+    assert!((run.state.v[0] - 3.0 * area).abs() < 1e-12, "{} {}", run.state.v[0], 3.0 * area);
+}
+
+#[test]
+fn sums_that_cannot_be_are_refused_with_place_and_remedy() {
+    let message = |signals: &str| {
+        let text = format!("[time]\nend = '1 s'\nstep = '1 ms'\n{BLOCK}position = ['0 m', '0 m']\n{PUSHED}{signals}");
+        load(text.as_bytes(), "scene.toml", "scene", &[]).unwrap_err().to_string()
+    };
+    let sum = |name: &str, terms: &str| format!("[signal.{name}]\nshape = 'sum'\nterms = {terms}\n");
+    let around = message(&[sum("s", "['a']"), sum("a", "['b']"), sum("b", "['a']")].concat());
+    assert!(
+        around.contains("signal.b.terms") && around.contains("the sums add each other: `a` → `b` → `a`"),
+        "{around}"
+    );
+    assert_eq!(around.matches("error:").count(), 1, "{around}");
+    let own = message(&sum("s", "['s']"));
+    assert!(own.contains("the sums add each other: `s` → `s`"), "{own}");
+    let unknown = message(&[sum("s", "['fats']"), "[signal.fast]\nshape = 'constant'\n".to_owned()].concat());
+    assert!(
+        unknown.contains("the signal `fats` is not defined") && unknown.contains("did you mean `fast`?"),
+        "{unknown}"
+    );
+    assert!(message(&sum("s", "[]")).contains("must have one name or more"));
+    assert!(message(&sum("s", "'a'")).contains("signal.s.terms"));
+    let deep: String = (0..40).map(|k| sum(&format!("d{k}"), &format!("['d{}']", k + 1))).collect();
+    let deep = message(&[sum("s", "['d0']"), deep, "[signal.d40]\nshape = 'constant'\n".to_owned()].concat());
+    assert!(deep.contains("sums of sums, 33 deep, but 32 is the limit"), "{deep}");
+    // A wrong term has one message: its own.
+    let wrong = message(&[sum("s", "['a']"), "[signal.a]\nshape = 'harmonic'\n".to_owned()].concat());
+    assert!(wrong.matches("error:").count() == 1 && wrong.contains("neither frequency nor period is given"), "{wrong}");
+    let large = "[signal.c]\nshape = 'constant'\nscale = 1e10\n".to_owned();
+    let large = message(&[sum("s", "['a']"), sum("a", "['c']\nscale = 1e10"), large].concat());
+    assert!(large.contains("its factor of `c` is 1e20, over 1e12"), "{large}");
+    let many = message("[signal.s]\nshape = 'chirp'\nfrom = '1 Hz'\nto = '1 GHz'\nduration = '1 s'\n");
+    assert!(many.contains("signal.s.duration") && many.contains("at most 1000000 periods"), "{many}");
+}
+
+#[test]
+fn terms_of_a_sum_are_checked_for_what_the_sum_drives() {
+    let head = "[time]\nend = '1 s'\nstep = '20 ms'\n";
+    let text = format!("{head}{BLOCK}position = ['0 m', '0 m']\n{PUSHED}{TERMS}");
+    let warnings: Vec<String> = resolved(&text).warnings.iter().map(ToString::to_string).collect();
+    let fast = warnings.iter().find(|warning| warning.contains("signal.swept.to")).unwrap();
+    assert!(fast.contains("its shortest period of 83.33 ms is 4.17 steps of 20 ms: a step takes its mean"), "{fast}");
+    assert!(!warnings.iter().any(|warning| warning.contains("not used")), "{warnings:?}");
+}
