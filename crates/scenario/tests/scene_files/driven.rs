@@ -416,7 +416,7 @@ fn sums_that_cannot_be_are_refused_with_place_and_remedy() {
     let large = "[signal.c]\nshape = 'constant'\nscale = 1e10\n".to_owned();
     let large = message(&[sum("s", "['a']"), sum("a", "['c']\nscale = 1e10"), large].concat());
     assert!(large.contains("its factor of `c` is 1e20, over 1e12"), "{large}");
-    let many = message("[signal.s]\nshape = 'chirp'\nfrom = '1 Hz'\nto = '1 GHz'\nduration = '1 s'\n");
+    let many = message("[signal.s]\nshape = 'chirp'\nfrom = '1 Hz'\nto = '1e9 Hz'\nduration = '1 s'\n");
     assert!(many.contains("signal.s.duration") && many.contains("at most 1000000 periods"), "{many}");
 }
 
