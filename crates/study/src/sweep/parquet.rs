@@ -206,3 +206,59 @@ fn unit(name: &str, sweep: &Sweep) -> Option<String> {
         _ => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    use parquet::record::Field;
+
+    const SWEEP: &str = "scene = \"s.toml\"\n[grid]\nblock.b.tilt = [\"1 deg\", \"2 deg\"]\n\
+        time.scheme = [\"moreau-jean\"]\n[outputs]\nlargest = { max = \"b.vx\" }\nover = \"verdict.0.what\"\n";
+
+    fn fields(text: &str) -> (Vec<Vec<Field>>, String) {
+        let sweep = Sweep::read(SWEEP, "sweep.toml", &|_, _| Ok(Vec::new())).unwrap();
+        let bytes = parquet_table(text, &sweep).unwrap();
+        assert_eq!(bytes, parquet_table(text, &sweep).unwrap());
+        let reader = SerializedFileReader::new(bytes::Bytes::from(bytes)).unwrap();
+        let metadata = reader.metadata().file_metadata().key_value_metadata().unwrap();
+        let units = metadata.iter().find(|entry| entry.key == UNITS).unwrap().value.clone().unwrap();
+        let rows = reader.get_row_iter(None).unwrap();
+        (rows.map(|row| row.unwrap().into_columns().into_iter().map(|(_, field)| field).collect()).collect(), units)
+    }
+
+    #[test]
+    fn cells_come_back_with_their_types_and_empty_ones_as_null() {
+        let text = "case,block.b.tilt,time.scheme,largest,over,flag,mixed,none,status,unsolved_steps,error\n\
+            0,0.1,moreau-jean,2e-301,rests,true,1,,complete,0,\n\
+            1,-0.2,moreau-jean,,rocks,,inf,,failed,3,\"at 1, \"\"x\"\"\"\n";
+        let (rows, units) = fields(text);
+        let word = |text: &str| Field::Str(text.to_owned());
+        let first = [
+            Field::Long(0),
+            Field::Double(0.1),
+            word("moreau-jean"),
+            Field::Double(2e-301),
+            word("rests"),
+            Field::Bool(true),
+            word("1"),
+            Field::Null,
+            word("complete"),
+            Field::Long(0),
+            Field::Null,
+        ];
+        assert_eq!(rows[0], first);
+        assert_eq!((rows.len(), &rows[1][3], &rows[1][5]), (2, &Field::Null, &Field::Null));
+        assert_eq!((&rows[1][6], &rows[1][10]), (&word("inf"), &word("at 1, \"x\"")));
+        assert_eq!(units, "{\"block.b.tilt\":\"rad\",\"largest\":\"m/s\"}");
+    }
+
+    #[test]
+    fn row_groups_hold_all_rows_and_a_table_without_rows_is_one() {
+        let header = "case,status\n";
+        let text: String = (0..=ROWS).map(|k| format!("{k},complete\n")).collect();
+        let (rows, _) = fields(&format!("{header}{text}"));
+        assert_eq!((rows.len(), &rows[ROWS][0]), (ROWS + 1, &Field::Long(ROWS as i64)));
+        assert!(fields(header).0.is_empty());
+    }
+}
