@@ -13,7 +13,7 @@ use teeter_run::SceneSource;
 use teeter_scenario::diagnostic::Diagnostics;
 use teeter_study::sweep::{
     Ensemble, FIGURE_FILES, FILES, IDENTITY, Journal, JournalError, RESULTS, Shard, Sweep, SweepIdentity, ended_study,
-    matching_files, merge, run_cases, study_figures, study_page, write_results,
+    matching_files, merge, run_cases, study_figures, study_page, write_parquet, write_results,
 };
 use teeter_study::{StudyScene, runner};
 
@@ -186,7 +186,8 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
         console.note(&format!("interrupted: {} of {total} cases are done; continue with --resume", journal.done()));
         return Exit::Interrupted;
     }
-    if let Err(error) = write_results(results, &study.sweep) {
+    let written = write_results(results, &study.sweep).and_then(|()| write_parquet(results, &study.sweep));
+    if let Err(error) = written {
         console.error(&format!("error: {error}"));
         return Exit::Failed;
     }
@@ -229,7 +230,9 @@ pub(crate) fn merge_shards(folders: &[PathBuf], out: &Path, force: bool, quiet: 
         let results = Results::create_of(&FILES, out, force)?;
         results.write(IDENTITY, identity)?;
         results.write(RESULTS, table)?;
-        Ok((ended_study(out, "")?.sweep.wants_figures(), results))
+        let study = ended_study(out, "")?;
+        write_parquet(&results, &study.sweep)?;
+        Ok((study.sweep.wants_figures(), results))
     };
     match merged() {
         Ok((figures, results)) => {

@@ -45,8 +45,10 @@ const UNITS: [(&str, &str); 33] = [
     ("point", ""),
 ];
 
-/// The unit of a column; empty for words, `None` for a column that is not known.
-fn unit<'n>(table: &str, column: &'n str) -> Option<&'static str> {
+/// The unit of a column of a table that a run writes, in the notation of scenes; empty for words, `None` for a column
+/// that is not known.
+#[must_use]
+pub fn unit<'n>(table: &str, column: &'n str) -> Option<&'static str> {
     if table == "energy.csv" && column != "t" {
         return Some("J");
     }

@@ -37,7 +37,7 @@ pub use checkpoint::{
     CHECKPOINT, Checkpoint, CheckpointError, Found, Identity, Moment, VERSION as CHECKPOINT_VERSION, content_hash,
     program_hash,
 };
-pub use columns::columns;
+pub use columns::{columns, unit as column_unit};
 pub use deflections::LargestDeflection;
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
 pub use made_energy::ENERGY_MADE;

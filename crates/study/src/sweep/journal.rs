@@ -13,18 +13,21 @@ use teeter_report::{Results, ResultsError};
 
 /// The table of a study that has ended.
 pub const RESULTS: &str = "results.csv";
+/// The same table with the types of its columns.
+pub const PARQUET: &str = "results.parquet";
 /// The rows of a study that hasn't.
 pub const JOURNAL: &str = "journal.csv";
 /// The files that a study may write, in the order in which they are removed.
-pub const FILES: [&str; FIGURE_FILES.len() + 3] = {
-    let mut all = [RESULTS; FIGURE_FILES.len() + 3];
+pub const FILES: [&str; FIGURE_FILES.len() + 4] = {
+    let mut all = [RESULTS; FIGURE_FILES.len() + 4];
     let mut k = 0;
     while k < FIGURE_FILES.len() {
         all[k] = FIGURE_FILES[k];
         k += 1;
     }
-    all[k + 1] = JOURNAL;
-    all[k + 2] = IDENTITY;
+    all[k + 1] = PARQUET;
+    all[k + 2] = JOURNAL;
+    all[k + 3] = IDENTITY;
     all
 };
 
@@ -67,6 +70,10 @@ pub enum JournalError {
         /// Why.
         source: TableError,
     },
+    /// A table that can't be written as Parquet.
+    #[cfg(feature = "parquet")]
+    #[error(transparent)]
+    Parquet(#[from] super::ParquetTableError),
     /// Shards that are not there.
     #[error("shards are missing: {0}")]
     MissingShards(String),
@@ -148,6 +155,13 @@ impl Journal {
         let foreign = |source| JournalError::Foreign { folder: folder.to_owned(), source };
         identity.admit(&SweepIdentity::from_json(&text).map_err(foreign)?).map_err(foreign)?;
         let (ended, path) = (folder.join(RESULTS), folder.join(JOURNAL));
+        // Nothing but `results.csv` of an ended study says what is in it.
+        match fs::remove_file(folder.join(PARQUET)) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                return Err(io_error(&folder.join(PARQUET))(error));
+            }
+            _ => {}
+        }
         if !path.exists() && ended.exists() {
             fs::rename(&ended, &path).map_err(io_error(&ended))?;
         }
@@ -231,6 +245,26 @@ pub fn write_results(results: &Results, sweep: &Sweep) -> Result<(), JournalErro
     let table = results.folder().join(RESULTS);
     File::open(&table).and_then(|file| file.sync_all()).map_err(io_error(&table))?;
     Ok(results.remove(JOURNAL)?)
+}
+
+/// Writes `results.parquet` from the `results.csv` of a folder, under a temporary name until it is
+/// complete; without the feature `parquet`, removes one of before.
+///
+/// # Errors
+/// If a file can't be read or written.
+pub fn write_parquet(results: &Results, sweep: &Sweep) -> Result<(), JournalError> {
+    #[cfg(feature = "parquet")]
+    {
+        let path = results.folder().join(RESULTS);
+        let text = fs::read_to_string(&path).map_err(io_error(&path))?;
+        results.write(PARQUET, super::parquet_table(&text, sweep)?)?;
+        Ok(())
+    }
+    #[cfg(not(feature = "parquet"))]
+    {
+        let _ = sweep;
+        Ok(results.remove(PARQUET)?)
+    }
 }
 
 fn table(header: &str, rows: &[(u64, &str)]) -> String {

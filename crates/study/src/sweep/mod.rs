@@ -4,7 +4,7 @@
 //! so that a study of any size needs no list of its cases. [`run_cases`] runs those that are still
 //! to do on all cores and hands on each [`CaseRow`] as it ends. [`Journal`] keeps the rows on disk
 //! as they come, in any order, and survives a kill; [`write_results`] sorts them into
-//! `results.csv`. [`merge`] puts the journals of several shards together, to the same bytes as one
+//! `results.csv`, and [`write_parquet`] repeats that as `results.parquet`. [`merge`] puts the journals of several shards together, to the same bytes as one
 //! run of all cases.
 
 mod case;
@@ -17,6 +17,8 @@ mod journal;
 mod listing;
 pub(crate) mod number;
 mod output;
+#[cfg(feature = "parquet")]
+mod parquet;
 pub(crate) mod sample;
 mod shard;
 pub(crate) mod spec;
@@ -25,8 +27,12 @@ pub use case::{CaseRow, CaseStatus, run_cases};
 pub use figures::{Ensemble, FIGURE_FILES, StudyFigure, StudyTable, TableError, study_figures, study_page};
 pub use file::{FilesOf, Sweep};
 pub use identity::{IDENTITY, SweepIdentity, SweepIdentityError};
-pub use journal::{FILES, JOURNAL, Journal, JournalError, RESULTS, ended_study, merge, write_results};
+pub use journal::{
+    FILES, JOURNAL, Journal, JournalError, PARQUET, RESULTS, ended_study, merge, write_parquet, write_results,
+};
 pub use listing::matching_files;
 pub use output::Output;
+#[cfg(feature = "parquet")]
+pub use parquet::{ParquetTableError, parquet_table};
 pub(crate) use sample::mixed;
 pub use shard::{Shard, ShardError};
