@@ -12,7 +12,7 @@
 //! 6. **Pivots from a near-solution** (`crossover.rs`), if there are many contacts in the plane: a
 //!    crowd. If they fail, **a short central path, alternating directions** with Newton steps from
 //!    where they end, **and a longer path**, with pivots again from where one of these has come nearer.
-//!    A large crowd with a small tolerance ends here.
+//!    A large crowd with a loose tolerance begins with the path; one with a small tolerance ends here.
 //! 7. **Pivots** ([`Lemke`](crate::Lemke)), in the plane for up to some hundred contacts. If blocks
 //!    lean on each other, the contact forces may be nearly undetermined, and methods that follow
 //!    the residual stop at about 1e-10; pivoting is exact.

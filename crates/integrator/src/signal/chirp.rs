@@ -321,7 +321,7 @@ mod tests {
 
     #[test]
     fn long_chirps_are_integrated_to_rounding() {
-        // 1500 and 600 periods against 40 of five points per shortest period.
+        // Some 1500 and 560 periods, against a quadrature of 40 panels or more per shortest period.
         for (growth, frequencies) in [(Growth::Linear, [0.1, 100.0]), (Growth::Logarithmic, [100.0, 0.5])] {
             let chirp = Chirp::new(0.0, 30.0, frequencies, 0.0, growth).unwrap();
             let value = |t: f64| chirp.value(t);

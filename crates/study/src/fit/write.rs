@@ -95,13 +95,15 @@ pub fn json(fit: &Fit, scene: &str, measured: &str, block: &str) -> String {
 
 /// A value with its error to two digits of the error.
 fn with_error(found: &Estimate) -> String {
-    let error = found.standard_error;
     let unit = if found.unit.is_empty() { String::new() } else { format!(" {}", found.unit) };
-    if !(error > 0.0 && error.is_finite()) {
-        return format!("{}{unit}", short(found.value));
-    }
-    let decimals = (1 - error.log10().floor() as i32).clamp(0, 12) as usize;
-    format!("{:.decimals$} ± {:.decimals$}{unit}", found.value, 1.96 * error)
+    let Some(decimals) = decimals(found) else { return format!("{}{unit}", short(found.value)) };
+    format!("{:.decimals$} ± {:.decimals$}{unit}", found.value, 1.96 * found.standard_error)
+}
+
+/// The decimals that the error of a value leaves: two digits of it; `None` if it has no error.
+fn decimals(found: &Estimate) -> Option<usize> {
+    let error = found.standard_error;
+    (error > 0.0 && error.is_finite()).then(|| (1 - error.log10().floor() as i32).clamp(0, 12) as usize)
 }
 
 /// The results in sentences; the first ones are those of the keys.
@@ -167,12 +169,8 @@ pub fn page(fit: &Fit, title: &str, names: [&str; 3]) -> Result<String, AxisErro
     let mut html = String::new();
     let rows = fit.estimates.iter().filter(|found| found.value.is_finite()).map(|found| {
         let (low, high) = found.interval();
-        // As many decimals as the error leaves, and one more.
-        let decimals = if found.standard_error > 0.0 && found.standard_error.is_finite() {
-            (2 - found.standard_error.log10().floor() as i32).clamp(0, 15) as usize
-        } else {
-            5
-        };
+        // One more than the error leaves.
+        let decimals = decimals(found).map_or(5, |decimals| decimals + 1);
         let number = |value: f64| escaped(&format!("{value:.decimals$}")).replace('-', "\u{2212}");
         vec![
             format!("<code>{}</code>", escaped(&found.name)),

@@ -242,8 +242,8 @@ pub fn write_results(results: &Results, sweep: &Sweep) -> Result<(), JournalErro
     let text = fs::read_to_string(&path).map_err(io_error(&path))?;
     results.write(RESULTS, table(&sweep.header(), &sorted(std::iter::once(text.as_str()))))?;
     // On the disk before its only other copy goes: a power cut must not take a study.
-    let table = results.folder().join(RESULTS);
-    File::open(&table).and_then(|file| file.sync_all()).map_err(io_error(&table))?;
+    let written = results.folder().join(RESULTS);
+    File::open(&written).and_then(|file| file.sync_all()).map_err(io_error(&written))?;
     Ok(results.remove(JOURNAL)?)
 }
 
