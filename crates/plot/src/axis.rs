@@ -12,6 +12,8 @@ pub struct Axis {
     scale: Scale,
     low: f64,
     high: f64,
+    /// What values are multiplied by in labels.
+    shown: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +30,9 @@ const MOST_DECADES: f64 = 300.0;
 
 /// Values that differ by less than this relative amount are drawn as constant.
 const CONSTANT: f64 = 1e-9;
+
+/// Above and below a constant value there is room for this part of it.
+const ROOM_OF_CONSTANT: f64 = 0.1;
 
 /// Least relative width of a given range; the round numbers in it can still be distinguished.
 const NARROWEST: f64 = 1e-12;
@@ -64,7 +69,7 @@ impl Axis {
                 (round_down(low - margin).max(-MOST_DECADES), round_up(high + margin).min(MOST_DECADES))
             }
         };
-        Ok(Self { label, scale: Scale::Logarithmic, low, high })
+        Ok(Self { label, scale: Scale::Logarithmic, low, high, shown: 1.0 })
     }
 
     /// A linear axis over the finite values with a margin of 6 %, at least `least` wide in their
@@ -73,7 +78,7 @@ impl Axis {
     #[must_use]
     pub fn around(label: impl Into<String>, values: impl IntoIterator<Item = f64>, least: f64) -> Self {
         let (low, high) = range_around(values.into_iter(), least);
-        Self { label: label.into(), scale: Scale::Linear, low, high }
+        Self { label: label.into(), scale: Scale::Linear, low, high, shown: 1.0 }
     }
 
     /// A linear axis with given ends. If these aren't a valid range (not finite, not ascending, or
@@ -81,7 +86,7 @@ impl Axis {
     #[must_use]
     pub fn between(label: impl Into<String>, low: f64, high: f64) -> Self {
         if is_drawable(low, high) {
-            Self { label: label.into(), scale: Scale::Linear, low, high }
+            Self { label: label.into(), scale: Scale::Linear, low, high, shown: 1.0 }
         } else {
             Self::around(label, [low, high], 0.0)
         }
@@ -93,6 +98,15 @@ impl Axis {
         let low = self.scaled(low);
         if is_drawable(low, self.high) {
             self.low = low;
+        }
+        self
+    }
+
+    /// Labels a linear axis in another unit: values times `factor`, which must be positive. Curves and ends stay in theirs.
+    #[must_use]
+    pub fn shown_in(mut self, factor: f64) -> Self {
+        if self.scale == Scale::Linear && factor.is_finite() && factor > 0.0 {
+            self.shown = factor;
         }
         self
     }
@@ -129,7 +143,13 @@ impl Axis {
     /// About `count` round numbers on the axis.
     pub(crate) fn ticks(&self, count: usize) -> Ticks {
         match self.scale {
-            Scale::Linear => Ticks::linear(self.low, self.high, count),
+            Scale::Linear => {
+                let mut ticks = Ticks::linear(self.shown * self.low, self.shown * self.high, count);
+                if self.shown != 1.0 {
+                    ticks.major.iter_mut().for_each(|(at, _)| *at /= self.shown);
+                }
+                ticks
+            }
             Scale::Logarithmic => Ticks::logarithmic(self.low, self.high),
         }
     }
@@ -183,16 +203,12 @@ fn range_around(values: impl Iterator<Item = f64>, least: f64) -> (f64, f64) {
     if low > high {
         return (-1.0, 1.0);
     }
+    let largest = low.abs().max(high.abs());
+    let least = if high - low > CONSTANT * largest { least } else { least.max(2.0 * ROOM_OF_CONSTANT * largest) };
     let room = 0.06 * (high - low) + 0.5 * (least - (high - low)).max(0.0);
-    // For constant values wide enough that the ends differ from the values, however large these
-    // are.
-    let least = CONSTANT * low.abs().max(high.abs());
-    if room > least {
-        (low - room, high + room)
-    } else {
-        let room = least.max(1.0);
-        (low - room, high + room)
-    }
+    // The range of 0 alone, and of numbers too small to be told apart from it.
+    let room = if room > f64::MIN_POSITIVE { room } else { 1.0 };
+    (low - room, high + room)
 }
 
 #[cfg(test)]
@@ -236,7 +252,7 @@ mod tests {
         assert_eq!(ends(&[2.0, 3.0]), (1.95, 3.05));
         assert_eq!(ends(&[-1.0, 1.0]), (-1.1, 1.1));
         assert_eq!(ends(&[]), (0.0, 1.05));
-        assert_eq!(ends(&[4.0]), (3.0, 5.0));
+        assert_eq!(ends(&[4.0]), (3.6, 4.4));
         let refused = Axis::linear("x", [0.0, f64::INFINITY]);
         assert_eq!(refused, Err(AxisError::NotFinite { axis: "x".to_owned(), value: f64::INFINITY }));
     }

@@ -2,7 +2,7 @@
 
 use crate::legend::Legend;
 use crate::theme::{Colour, Theme};
-use crate::ticks::Ticks;
+use crate::ticks::{Ticks, text_width};
 use crate::{Axis, Panel, escaped};
 use std::fmt::Write;
 
@@ -52,6 +52,8 @@ const HEADER: f64 = 24.0;
 /// Height above a panel without legend or note.
 const BARE_HEADER: f64 = 12.0;
 const FOOTER: f64 = 40.0;
+/// Between labels of the x axis.
+const LEAST_SPACE: f64 = 8.0;
 /// Height of a single panel, and of one of several.
 const HEIGHTS: [f64; 2] = [210.0, 140.0];
 
@@ -74,7 +76,17 @@ impl Frame<'_> {
     }
 
     pub(crate) fn x_ticks(&self) -> Ticks {
-        self.x.ticks((6.0 * self.across / WIDTH).round() as usize)
+        let most = (6.0 * self.across / WIDTH).round() as usize;
+        // As many as have room beside each other.
+        let crowded = |ticks: &Ticks| {
+            let places: Vec<(f64, f64)> =
+                ticks.major.iter().map(|(x, label)| (self.px(*x), 0.5 * text_width(label))).collect();
+            places.windows(2).any(|pair| pair[1].0 - pair[0].0 < pair[0].1 + pair[1].1 + LEAST_SPACE)
+        };
+        let counts = (2..most).rev();
+        counts.map(|count| self.x.ticks(count)).fold(self.x.ticks(most), |chosen, fewer| {
+            if crowded(&chosen) { fewer } else { chosen }
+        })
     }
 }
 
@@ -174,12 +186,15 @@ impl Figure {
 
     fn draw_x_axis(&self, svg: &mut String, y: f64) {
         let frame = Frame { top: y, height: 0.0, across: self.width, x: &self.x };
-        for (x, label) in frame.x_ticks().major {
-            let px = frame.px(x);
+        let ticks = frame.x_ticks();
+        for (x, label) in &ticks.major {
+            let px = frame.px(*x);
+            // A wide label at the end of the axis stays in the figure.
+            let middle = px.min(self.width - 0.5 * text_width(label) - 1.0);
             let _ = writeln!(
                 svg,
-                "<path d=\"M{px:.2} {y:.2}v4\" stroke=\"{}\" stroke-width=\".8\"/><text x=\"{px:.2}\" y=\"{:.2}\" \
-                 text-anchor=\"middle\">{label}</text>",
+                "<path d=\"M{px:.2} {y:.2}v4\" stroke=\"{}\" stroke-width=\".8\"/><text x=\"{middle:.2}\" \
+                 y=\"{:.2}\" text-anchor=\"middle\">{label}</text>",
                 Colour::Ink.value(self.theme),
                 y + 15.0
             );
@@ -189,7 +204,7 @@ impl Figure {
             "<text x=\"{:.2}\" y=\"{:.2}\" text-anchor=\"middle\">{}</text>",
             0.5 * (LEFT + self.width - RIGHT),
             y + 31.0,
-            escaped(&self.x.label)
+            ticks.reading.title(&self.x.label)
         );
     }
 }

@@ -203,7 +203,7 @@ impl Panel {
                 Colour::Shade.value(theme)
             );
         }
-        draw_grid(svg, frame, theme, y);
+        let title = draw_grid(svg, frame, theme, y);
         let _ = writeln!(
             svg,
             "<clipPath id=\"{id}\"><rect x=\"{LEFT}\" y=\"{top:.2}\" width=\"{width}\" height=\"{height}\"/>\
@@ -259,7 +259,7 @@ impl Panel {
             "<rect x=\"{LEFT}\" y=\"{top:.2}\" width=\"{width}\" height=\"{height}\" fill=\"none\" stroke=\"{ink}\" \
              stroke-width=\".8\"/><text transform=\"translate(13 {:.2}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
             top + 0.5 * height,
-            escaped(&y.label)
+            title
         );
     }
 }
@@ -289,8 +289,8 @@ impl Panel {
     }
 }
 
-/// Grid lines at the ticks of both axes (of x only if it is logarithmic), and the labels of y.
-fn draw_grid(svg: &mut String, frame: &Frame, theme: Theme, y: &Axis) {
+/// Grid lines at the ticks of both axes (of x only if it is logarithmic), and the labels of y; returns what the title of y says with them.
+fn draw_grid(svg: &mut String, frame: &Frame, theme: Theme, y: &Axis) -> String {
     let (top, height, width) = (frame.top, frame.height, frame.width());
     let y_ticks = y.ticks(if height > 180.0 { 6 } else { 4 });
     let py = |value: f64| top + y.below_high(value, height);
@@ -317,6 +317,7 @@ fn draw_grid(svg: &mut String, frame: &Frame, theme: Theme, y: &Axis) {
             at + 4.0
         );
     }
+    y_ticks.reading.title(&y.label)
 }
 
 fn draw_bands(svg: &mut String, frame: &Frame, theme: Theme, bands: &[Band]) {

@@ -1,5 +1,7 @@
 //! Round numbers along an axis, with their labels.
 
+use crate::escaped;
+
 /// The ticks of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Ticks {
@@ -7,7 +9,23 @@ pub(crate) struct Ticks {
     pub(crate) major: Vec<(f64, String)>,
     /// Values between them, without labels.
     pub(crate) minor: Vec<f64>,
+    /// What the labels leave out.
+    pub(crate) reading: Reading,
 }
+
+/// How labels are to be read: the value is the offset plus the label times 10ⁿ.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Reading {
+    /// Without its sign, and whether that is negative.
+    offset: Option<(String, bool)>,
+    power: i32,
+}
+
+/// Labels of values that aren't wider than this stand beside an axis without touching its title.
+const WIDEST: f64 = 42.0;
+
+/// Values this many times the range share their leading digits, which then are an offset.
+const SHARED: f64 = 100.0;
 
 /// With at least this many powers of ten on a logarithmic axis, only these are labelled.
 const ENOUGH_DECADES: usize = 3;
@@ -19,7 +37,8 @@ const MOST_LABELS: i32 = 9;
 const PLAIN_DECIMALS: [f64; 2] = [0.999e-3, 1.001e5];
 
 impl Ticks {
-    /// About `count` multiples of 1, 2 or 5 · 10ⁿ in a range, at most 1.5 times as many.
+    /// About `count` multiples of 1, 2 or 5 · 10ⁿ in a range, at most 1.5 times as many. Digits that the values share,
+    /// and powers of ten, are left to the axis' title where the labels would be too wide.
     pub(crate) fn linear(low: f64, high: f64, count: usize) -> Self {
         let raw = (high - low) / count as f64;
         let power = 10f64.powf(raw.log10().floor());
@@ -27,23 +46,32 @@ impl Ticks {
         let step = factor * power;
         let first = (low / step - 1e-9).ceil() as i64;
         let last = (high / step + 1e-9).floor() as i64;
-        // Very small or large numbers as powers of ten.
-        let powers = !(1e-4..1e5).contains(&step);
-        let decimals = (-step.log10().floor()).clamp(0.0, 12.0) as usize;
-        let label = |x: f64| {
-            let text = match powers {
-                true if x == 0.0 => "0".to_owned(),
-                // As many digits as the step has, however large the number.
-                true => {
-                    let digits = (x.abs().log10() + 1e-9).floor() - (step.log10() + 1e-9).floor();
-                    format!("{x:.*e}", digits.max(0.0) as usize)
-                }
-                false => format!("{x:.decimals$}"),
-            };
-            text.replace('-', "\u{2212}")
+        let labels = |from: i64, power: i32| -> Vec<String> {
+            let unit = 10f64.powi(power);
+            (first..=last).map(|k| plain((k - from) as f64 * step / unit, step / unit)).collect()
         };
-        let major = (first..=last).map(|k| k as f64 * step).map(|x| (x, label(x))).collect();
-        Self { major, minor: Vec::new() }
+        let fit = |labels: &[String], step: f64| {
+            (1e-4..1e5).contains(&step) && labels.iter().all(|label| text_width(label) <= WIDEST)
+        };
+        let largest = low.abs().max(high.abs());
+        let (mut texts, mut reading) = (labels(0, 0), Reading::default());
+        if !fit(&texts, step) {
+            let mut from = 0;
+            if largest > SHARED * (high - low) {
+                let round = 10f64.powf((high - low).log10().ceil());
+                let digits = (0.5 * (low + high) / round).round();
+                from = (digits * round / step).round() as i64;
+                reading.offset = Some((shared(digits.abs(), round), digits < 0.0));
+                texts = labels(from, 0);
+            }
+            if !fit(&texts, step) {
+                let most = (first - from).abs().max((last - from).abs()).max(1) as f64 * step;
+                reading.power = 3 * (most.log10() / 3.0 + 1e-9).floor() as i32;
+                texts = labels(from, reading.power);
+            }
+        }
+        let major = (first..=last).map(|k| k as f64 * step).zip(texts).collect();
+        Self { major, minor: Vec::new(), reading }
     }
 
     /// Powers of ten in a range, given by the logarithms of its ends; if there are few, also 2 and
@@ -53,7 +81,7 @@ impl Ticks {
         let enough = last - first + 1 >= ENOUGH_DECADES as i32;
         let every = 1 + (last - first).max(0) / MOST_LABELS;
         let written_out = low >= PLAIN_DECIMALS[0].log10() && high <= PLAIN_DECIMALS[1].log10();
-        let mut ticks = Self { major: Vec::new(), minor: Vec::new() };
+        let mut ticks = Self { major: Vec::new(), minor: Vec::new(), reading: Reading::default() };
         for power in first - 1..=last {
             for factor in 1..=9 {
                 let at = f64::from(power) + f64::from(factor).log10();
@@ -76,6 +104,71 @@ impl Ticks {
         }
         ticks
     }
+}
+
+impl Reading {
+    /// The title of an axis, as SVG text, with what its labels leave out: the offset after the name, the power of ten
+    /// before the unit, which is expected in brackets at the end.
+    pub(crate) fn title(&self, title: &str) -> String {
+        let (name, unit) = match title.rsplit_once(" (") {
+            Some((name, unit)) if unit.ends_with(')') => (name, unit.trim_end_matches(')')),
+            _ => (title, ""),
+        };
+        let offset = self.offset.as_ref().map_or(String::new(), |(offset, negative)| {
+            format!(" {} {offset}", if *negative { '+' } else { '\u{2212}' })
+        });
+        let power = if self.power == 0 { String::new() } else { power_of_ten(self.power) };
+        let unit = match (power.is_empty(), unit.is_empty()) {
+            (true, true) => String::new(),
+            (true, false) => format!(" ({})", escaped(unit)),
+            (false, true) => format!(" ({power})"),
+            (false, false) => format!(" ({power} {})", escaped(unit)),
+        };
+        format!("{}{offset}{unit}", escaped(name))
+    }
+}
+
+/// A number with as many decimals as its step asks for.
+fn plain(x: f64, step: f64) -> String {
+    let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
+    format!("{x:.decimals$}").replace('-', "\u{2212}")
+}
+
+/// Digits that values share, times the power of ten that they are counted in.
+fn shared(digits: f64, round: f64) -> String {
+    let value = digits * round;
+    if (1e-4..1e7).contains(&value) {
+        return plain(value, round);
+    }
+    let text = format!("{value:.*e}", (digits.log10() + 1e-9).floor().max(0.0) as usize);
+    let (mantissa, power) = text.split_once('e').unwrap_or((&text, "0"));
+    format!("{mantissa}·{}", power_of_ten(power.parse().unwrap_or(0)))
+}
+
+/// 10ⁿ, after which the text goes on at its own height.
+fn power_of_ten(power: i32) -> String {
+    let exponent = power.to_string().replace('-', "\u{2212}");
+    format!("10<tspan dy=\"-4\" font-size=\"8\">{exponent}</tspan><tspan dy=\"4\">\u{200b}</tspan>")
+}
+
+/// About how wide a number is in the type of the labels, which is Helvetica of 11 units.
+pub(crate) fn text_width(text: &str) -> f64 {
+    let mut inside_tag = false;
+    let wide = |c: char| match c {
+        '.' | ',' | ' ' | '·' => 3.1,
+        '\u{2212}' | '+' => 6.4,
+        _ => 6.1,
+    };
+    let mut width = 0.0;
+    for c in text.chars() {
+        match c {
+            '<' => inside_tag = true,
+            '>' => inside_tag = false,
+            c if !inside_tag => width += wide(c),
+            _ => {}
+        }
+    }
+    width
 }
 
 /// The digits of factor · 10ⁿ.
@@ -105,9 +198,45 @@ mod tests {
     #[test]
     fn linear_ticks_are_round_and_inside() {
         assert_eq!(labels(&Ticks::linear(-0.031, 0.52, 6)), ["0.0", "0.1", "0.2", "0.3", "0.4", "0.5"]);
-        assert_eq!(labels(&Ticks::linear(0.0, 2.1e-6, 4)), ["0", "5e−7", "1.0e−6", "1.5e−6", "2.0e−6"]);
-        assert_eq!(labels(&Ticks::linear(0.0, 1.3e-5, 6)).last(), Some(&"1.2e−5"));
         assert_eq!(labels(&Ticks::linear(-4.2, 5.1, 6)), ["\u{2212}4", "\u{2212}2", "0", "2", "4"]);
+    }
+
+    #[test]
+    fn powers_of_ten_are_in_the_title() {
+        let title = |ticks: &Ticks| ticks.reading.title("Energy <E> (J)").replace('\u{200b}', "");
+        let small = Ticks::linear(0.0, 2.1e-6, 4);
+        assert_eq!(labels(&small), ["0.0", "0.5", "1.0", "1.5", "2.0"]);
+        let power = |n: &str| format!("10<tspan dy=\"-4\" font-size=\"8\">{n}</tspan><tspan dy=\"4\"></tspan>");
+        assert_eq!(title(&small), format!("Energy &lt;E&gt; ({} J)", power("\u{2212}6")));
+        assert_eq!(labels(&Ticks::linear(-2e-13, 4.2e-13, 3)), ["\u{2212}200", "0", "200", "400"]);
+        let large = Ticks::linear(0.0, 6e5, 6);
+        assert_eq!((labels(&large).last(), title(&large)), (Some(&"600"), format!("Energy &lt;E&gt; ({} J)", power("3"))));
+        assert_eq!(large.reading.title("Share"), format!("Share ({})", power("3")).replace("\"4\">", "\"4\">\u{200b}"));
+        assert_eq!(Ticks::linear(0.0, 5.0, 5).reading.title("Share of a (b) c"), "Share of a (b) c");
+    }
+
+    #[test]
+    fn digits_that_all_share_are_an_offset() {
+        let ticks = Ticks::linear(123_450.0, 123_450.003, 6);
+        assert_eq!(labels(&ticks)[..3], ["0.0000", "0.0005", "0.0010"]);
+        assert_eq!(ticks.reading.title("Position x (cm)"), "Position x \u{2212} 123450.00 (cm)");
+        let ticks = Ticks::linear(-5.318_53e-1 - 4e-6, -5.318_53e-1 + 4e-6, 4);
+        assert_eq!(labels(&ticks), ["\u{2212}6", "\u{2212}4", "\u{2212}2", "0"]);
+        assert!(ticks.reading.title("w (cm)").starts_with("w + 0.53185 (10<tspan"), "{}", ticks.reading.title("w (cm)"));
+        // What a label says and where it stands are the same value.
+        for (low, high) in [(3.082_687, 3.082_689), (1.170_05e-11, 1.170_06e-11), (29_999.9995, 30_000.0005), (-1e9, -1e9 + 0.1)] {
+            let ticks = Ticks::linear(low, high, 5);
+            let offset = ticks.reading.offset.clone().map_or(0.0, |(text, negative)| {
+                let text = text.replace("·10<tspan dy=\"-4\" font-size=\"8\">", "e").replace('\u{2212}', "-");
+                let value: f64 = text.split('<').next().unwrap().parse().unwrap();
+                if negative { -value } else { value }
+            });
+            for (value, label) in &ticks.major {
+                let read = label.replace('\u{2212}', "-").parse::<f64>().unwrap() * 10f64.powi(ticks.reading.power) + offset;
+                assert!((read - value).abs() < 1e-3 * (high - low), "{value}: {label} {:?}", ticks.reading);
+                assert!(text_width(label) <= WIDEST, "{label}");
+            }
+        }
     }
 
     #[test]
