@@ -88,7 +88,7 @@ export function wrongVerdicts(summary, trajectory, { scenery, frames }) {
 /** Whether blocks are prescribed, so that what stands on them rests in motion. */
 const carried = (scenery) => scenery.blocks.some(({ driven }) => driven);
 
-const factors = { k: 1e3, M: 1e6, G: 1e9, m: 1e-3, "µ": 1e-6, n: 1e-9, p: 1e-12 };
+const factors = { k: 1e3, M: 1e6, G: 1e9, m: 1e-3, "µ": 1e-6, n: 1e-9, p: 1e-12, f: 1e-15, a: 1e-18, z: 1e-21 };
 /** SI value of a unit as written on the page, such as mm or kN m. */
 export function inSi(unit) {
   const first = unit.split(" ")[0];
@@ -122,7 +122,7 @@ export async function unplotted(page, trajectory) {
       slider.dispatchEvent(new Event("input"));
       return [Number(document.getElementById("time-readout").dataset.t), [...document.querySelectorAll("#plots .panel")].map((panel) => ({
         title: panel.querySelector("h2, h3")?.textContent ?? "",
-        unit: panel.querySelector(".unit")?.textContent.replace(/[()]/g, "") ?? "",
+        unit: panel.dataset.unit ?? "",
         values: [...panel.querySelectorAll(".key b")].map((value) => Number(value.textContent.replace(/−/g, "-"))),
       }))];
     }, part);

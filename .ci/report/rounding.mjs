@@ -18,7 +18,7 @@ const travel = (values) => largest(values.map((x) => x - values[0]));
 const all = (series, pick) => largest(series.map(pick));
 
 const angleUnits = { "°": Math.PI / 180, rad: 1, mrad: 1e-3 };
-const lengthUnits = { m: 1, cm: 1e-2, mm: 1e-3, "µm": 1e-6, nm: 1e-9 };
+const lengthUnits = { km: 1e3, m: 1, cm: 1e-2, mm: 1e-3, "µm": 1e-6, nm: 1e-9 };
 /** SI value of a unit of a plot. */
 const si = (unit) => angleUnits[unit] ?? lengthUnits[unit] ?? inSi(unit);
 /** The unit in brackets at the end of the name of an axis. */

@@ -34,7 +34,7 @@
     const rule = (what) => `Of ${scenery.blocks.length} bodies at each time: least to largest, the middle 8 of 10, the median; by name the `
       + `${Math.min(3, scenery.blocks.length)} that ${what} furthest.`;
     const far = Math.max(...crowd.distances.bands[4]);
-    const [prefix, factor] = [["", 1], ["m", 1e3], ["µ", 1e6], ["n", 1e9]].find(([, f]) => far * f >= 0.5) ?? ["n", 1e9];
+    const [prefix, factor] = [["k", 1e-3], ["", 1], ["m", 1e3], ["µ", 1e6], ["n", 1e9]].find(([, f]) => far * f >= 0.5) ?? ["n", 1e9];
     plots.add({
       id: "distance", title: "Distance from the start", unit: `${prefix}m`, least: 1e-9 * factor, height: 190,
       series: [...bands(times, crowd.distances.bands, factor), ...chosen(crowd.distances, factor)],
@@ -55,6 +55,7 @@
   }
 
   const strongest = Math.max(1e-300, ...forces.points.map(({ normal }) => normal.reduce((most, f) => Math.max(most, f), 0)));
+  const scaled = (values) => values.map((f) => (f === null ? null : f * forces.factor));
   const active = scenery.contacts.map((_, k) => k).filter((k) => forces.points.some((point) => point.contact === k));
   const nameOf = ({ block, surface }) => `${scenery.blocks[block].name} on ${surface}`;
   // So many that one would look for them: one at a time.
@@ -71,19 +72,19 @@
     if (!points.length) return;
     const suffix = scenery.contacts.length > 1 ? `, ${nameOf(contact)}` : "";
     const series = (key) => points.map((point) =>
-      ({ label: contact.points[point.point].label, index: point.point, t: forces.borders, y: point[key], stepped: true }));
+      ({ label: contact.points[point.point].label, index: point.point, t: forces.borders, y: scaled(point[key]), stepped: true }));
     for (const [key, title] of [["normal", "Normal force"], ["tangential", "Tangential force"]]) {
       if (key === "tangential" && forces.frictionless.includes(k)) continue;
       const lines = series(key);
       const means = key === "normal" ? points.filter(({ mean }) => mean).map((point) =>
-        ({ label: contact.points[point.point].label, index: point.point, t: forces.borders, y: point.mean })) : [];
+        ({ label: contact.points[point.point].label, index: point.point, t: forces.borders, y: scaled(point.mean) })) : [];
       for (const line of lines) line.raw = means.some(({ index }) => index === line.index);
-      const least = 1e-6 * strongest;
+      const least = 1e-6 * strongest * forces.factor;
       plots.add({
-        id: `${key}-${k}`, contact: k, title: title + suffix, unit: "N", series: [...lines, ...means], cut: cutOf(lines, least), floor: 0, least, height: 150,
+        id: `${key}-${k}`, contact: k, title: title + suffix, unit: `${forces.prefix}N`, series: [...lines, ...means], cut: cutOf(lines, least), floor: 0, least, height: 150,
       });
       if (means.length) {
-        htmlElement("p", "note", `Pale: raw, the mean of each step or of a few. Strong: the mean over ${number(forces.window * 1e3, 2)} ms.`, byId(`panel-${key}-${k}`));
+        htmlElement("p", "note", `Pale: raw, the mean of each step or of a few. Strong: the mean over ${forces.window}.`, byId(`panel-${key}-${k}`));
       }
     }
     plots.add({
@@ -107,8 +108,9 @@
   note.append(byId("residual").content.cloneNode(true), " of the scene's energy unexplained.");
 
   for (const { id, title, x_label: xLabel, unit, least, guides, series } of data.portraits) {
+    const [, xName, xUnit] = xLabel.match(/^(.*) \(([^()]*)\)$/);
     plots.add({
-      id, title, xLabel, unit, guides, least: least[1], leastX: least[0], portrait: true, height: 300,
+      id, title, xName, xUnit, unit, guides, least: least[1], leastX: least[0], portrait: true, height: 300,
       series,
     });
   }
@@ -125,6 +127,8 @@
     return [...byBody.values()].map((own) => [own.map((row) => Number(row.dataset.t)), own]);
   })();
   const decimals = Math.min(9, Math.max(3, Math.ceil(-Math.log10(data.dt))));
+  /** The first few blocks that are free to move, by name and number. */
+  const readOut = scenery.blocks.map(({ name }, k) => [name, k]).filter(([, k]) => !scenery.blocks[k].driven).slice(0, 4);
   let frame = 0;
   /** Where between the pictures the clock is. */
   let position = 0;
@@ -141,8 +145,8 @@
     slider.setAttribute("aria-valuetext", text);
     byId("time-readout").textContent = text;
     byId("time-readout").dataset.t = t;
-    byId("scene-readout").textContent = (crowd ? [] : scenery.blocks.slice(0, 4))
-      .map(({ name }, k) => `${several ? `${name}: ` : ""}φ = ${fixed(frames.blocks[k].phi[frame] * degrees, 0.01)}°`)
+    byId("scene-readout").textContent = (crowd ? [] : readOut)
+      .map(([name, k]) => `${several ? `${name}: ` : ""}φ = ${fixed(frames.blocks[k].phi[frame] * degrees, 0.01)}°`)
       .join(" · ");
     // In motion an impact is ringed for a moment, at rest only in the frame that it led to.
     scene.draw(position, clock ? 0.25 * factor() : 0);
@@ -319,7 +323,7 @@
     const parts = [];
     if (how.value === "arrows" && forces.points.length) parts.push("Green arrows: the contact's force on the block, mean since the sample before.");
     if (how.value === "network") {
-      parts.push(`Green lines: contact forces, from centre to centre through the centre of pressure, means since the picture before; widest: ${number(chains.usual, 3)} N or more.`);
+      parts.push(`Green lines: contact forces, from centre to centre through the centre of pressure, means since the picture before; widest: ${withPrefix(chains.usual, "N")} or more.`);
     }
     if (data.loads.length) parts.push("Purple arrows: loads.");
     if (data.impacts.length) {

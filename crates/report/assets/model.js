@@ -89,28 +89,86 @@ function number(x, digits = 4) {
   return text.replace(/-/g, "−");
 }
 
-/** A number of an axis: with as many decimals as its step asks for, with a power of ten where those are too many. */
+/** A quantity with three digits and the prefix that suits. */
+function withPrefix(x, unit) {
+  const prefixes = [["G", 1e9], ["M", 1e6], ["k", 1e3], ["", 1], ["m", 1e-3], ["µ", 1e-6], ["n", 1e-9], ["p", 1e-12]];
+  const [prefix, size] = prefixes.find(([, least]) => Math.abs(Number(x.toPrecision(3))) >= least) ?? ["", 1];
+  return `${number(Number((x / size).toPrecision(3)), 3).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "")} ${prefix}${unit}`;
+}
+
+/** A number of an axis: with as many decimals as its step asks for. */
 function fixed(x, step) {
   if (Math.abs(x) < 1e-9 * step) return "0";
-  if (step < 1e-4 || step >= 1e5) {
-    return x.toExponential(Math.max(0, Math.floor(Math.log10(Math.abs(x) / step) + 1e-9))).replace("e+", "e").replace(/-/g, "−");
-  }
   const decimals = Math.min(12, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
   const text = x.toFixed(decimals);
   return Number(text) === 0 ? (0).toFixed(decimals) : text.replace("-", "−");
 }
 
-/** Multiples of 1, 2 or 5 · 10ⁿ in a range, about `count` of them, with their labels. */
-function ticks(low, high, count) {
+const superscripts = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+/** 10ⁿ. */
+const powerOfTen = (n) => `10${String(n).replace(/\d/g, (digit) => superscripts[digit]).replace("-", "⁻")}`;
+
+/** About how wide the label of an axis is, px. */
+const labelWidth = (label) => 7 * label.replace(/[.  ]/g, "").length + 3.5 * (label.match(/[.  ]/g) ?? []).length;
+
+/** Labels of a y axis that aren't wider than this stand beside it, px. */
+const widestLabel = 46;
+
+/**
+ * Multiples of 1, 2 or 5 · 10ⁿ in a range, about `count` of them, with their labels. Digits that the values share and powers of
+ * ten are left out where labels would be wider than `widest`: the value is `offset` plus the label times `power` of ten. As in
+ * the figures, whose rule is that of teeter-plot.
+ */
+function ticks(low, high, count, widest = widestLabel) {
+  const found = Object.assign([], { offset: "", power: 0 });
   const raw = (high - low) / count;
-  if (!(raw > 0) || !Number.isFinite(raw)) return [];
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const step = power * [1, 2, 5, 10].find((factor) => factor * power >= 0.7 * raw);
-  const found = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) {
-    found.push({ at: k * step, label: fixed(k * step, step) });
+  if (!(raw > 0) || !Number.isFinite(raw)) return found;
+  const decade = 10 ** Math.floor(Math.log10(raw));
+  const step = decade * [1, 2, 5, 10].find((factor) => factor * decade >= 0.7 * raw);
+  const [first, last] = [Math.ceil(low / step - 1e-9), Math.floor(high / step + 1e-9)];
+  const labels = (from, power) => Array.from({ length: last - first + 1 }, (_, k) => fixed((first + k - from) * step / 10 ** power, step / 10 ** power));
+  const fit = (texts) => step >= 1e-4 && step < 1e5 && texts.every((text) => labelWidth(text) <= widest);
+  let texts = labels(0, 0);
+  if (!fit(texts)) {
+    let from = 0;
+    if (Math.max(Math.abs(low), Math.abs(high)) > 100 * (high - low)) {
+      const round = 10 ** Math.ceil(Math.log10(high - low));
+      const digits = Math.round((low + high) / 2 / round);
+      from = Math.round((digits * round) / step);
+      found.offset = `${digits < 0 ? "+" : "−"} ${shared(Math.abs(digits), round)}`;
+      texts = labels(from, 0);
+    }
+    if (!fit(texts)) {
+      const most = Math.max(1, Math.abs(first - from), Math.abs(last - from)) * step;
+      found.power = 3 * Math.floor(Math.log10(most) / 3 + 1e-9);
+      texts = labels(from, found.power);
+    }
   }
+  texts.forEach((label, k) => found.push({ at: (first + k) * step, label }));
   return found;
+}
+
+/** Digits that the values of an axis share, times the power of ten that they are counted in. */
+function shared(digits, round) {
+  const value = digits * round;
+  if (value >= 1e-4 && value < 1e7) return fixed(value, round);
+  const [mantissa, power] = value.toExponential(Math.max(0, Math.floor(Math.log10(digits) + 1e-9))).split("e");
+  return `${mantissa} · ${powerOfTen(Number(power))}`;
+}
+
+/** The unit of an axis, with the power of ten that its labels leave out. */
+const unitWith = (power, unit) => [power ? powerOfTen(power) : "", unit].filter(Boolean).join(" ");
+
+/** The unit of times over the whole run, and what seconds are multiplied by: as in the figures. */
+const timeUnit = [["s", 1], ["ms", 1e3], ["µs", 1e6]].find(([, factor]) => (end - start) * factor >= 0.099) ?? ["ns", 1e9];
+
+/** A constant curve varies by less than this part of its size, and then has this part of it as room above and below. */
+const [constantPart, constantRoom] = [1e-9, 0.1];
+
+/** Least range of an axis: what varies by less than `least` is still, and what is constant is seen as that. */
+function leastRange(low, high, least) {
+  const largest = Math.max(Math.abs(low), Math.abs(high));
+  return high - low > constantPart * largest ? least : Math.max(least, 2 * constantRoom * largest);
 }
 
 /** The last index whose value is at most `x`, 0 before the first. */

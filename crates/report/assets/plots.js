@@ -12,7 +12,8 @@ const plots = (() => {
   function head(panel, parent) {
     const row = htmlElement("div", "head", undefined, parent);
     const title = htmlElement("h3", "", `${panel.title} `, row);
-    htmlElement("span", "unit", panel.unit ? `(${panel.unit})` : "", title);
+    panel.offset = htmlElement("span", "offset", "", title);
+    panel.unitText = htmlElement("span", "unit", panel.unit ? `(${panel.unit})` : "", title);
     const keys = panel.portrait && panel.series.length === 1 ? [] : panel.series.filter(({ raw }) => !raw);
     const legend = htmlElement("div", keys.length > 5 && keys.every(({ upper }) => !upper) ? "legend many" : "legend", undefined, row);
     for (const series of keys) {
@@ -43,6 +44,13 @@ const plots = (() => {
     }
   }
 
+  /** Says beside the title what the labels of its axis leave out. */
+  function sayReading(panel, { offset, power }) {
+    panel.offset.textContent = offset ? `${offset} ` : "";
+    const unit = unitWith(power, panel.unit);
+    panel.unitText.textContent = unit ? `(${unit})` : "";
+  }
+
   const stroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${series.over ? "5 5" : dash(series.index)}; fill: none`;
 
   /** Dashes a line that lies on an earlier one, which then shows in the gaps: within 1 % of what the panel shows. */
@@ -57,6 +65,7 @@ const plots = (() => {
   function add(panel) {
     panel.element = htmlElement("section", "panel", undefined, host);
     panel.element.id = `panel-${panel.id}`;
+    panel.element.dataset.unit = panel.unit ?? "";
     if (!panel.portrait) tellApart(panel);
     head(panel, panel.element);
     panel.svg = svgElement("svg", { class: "plot", role: "img", tabindex: 0, "aria-label": spoken.plot(panel) }, panel.element);
@@ -94,7 +103,7 @@ const plots = (() => {
     if (panel.cut && !panel.whole) [low, high] = [Math.max(low, -panel.cut.limit), Math.min(high, panel.cut.limit)];
     if (!(low <= high)) return [-1, 1];
     // What varies by less than that is still: its rounding is not for the eye.
-    const lacking = Math.max(0, panel.least - (high - low)) / 2;
+    const lacking = Math.max(0, leastRange(low, high, panel.least) - (high - low)) / 2;
     const room = 0.07 * (high - low) + lacking;
     return [low - room, high + room];
   }
@@ -142,15 +151,19 @@ const plots = (() => {
     }
     for (const { at, label } of xTicks) {
       const a = x(at).toFixed(1);
+      // A wide label at the end of the axis stays in the plot.
+      const middle = Math.min(+a, size.width - labelWidth(label) / 2).toFixed(1);
       grid += `<path class="axis" d="M${a} ${bottom}v4"/>`
-        + `<text x="${a}" y="${bottom + 16}" text-anchor="middle">${label}</text>`;
+        + `<text x="${middle}" y="${bottom + 16}" text-anchor="middle">${label}</text>`;
     }
     return grid + `<path class="axis" d="M${margin.left} ${margin.top}V${bottom}H${right}"/>`;
   }
 
   const timeTicks = () => {
-    const found = ticks(view[0], view[1], Math.max(3, Math.floor(width() / 90)));
-    if (found.length) found[found.length - 1].label += " s";
+    const [unit, factor] = timeUnit;
+    const found = ticks(view[0] * factor, view[1] * factor, Math.max(3, Math.floor(width() / 90)), Infinity);
+    for (const tick of found) tick.at /= factor;
+    if (found.length) found[found.length - 1].label += ` ${unit}`;
     return found;
   };
 
@@ -189,7 +202,9 @@ const plots = (() => {
     } else {
       const [low, high] = range(panel);
       const y = (value) => margin.top + ((high - value) / (high - low)) * (bottom - margin.top);
-      body = axes(panel.svg, size, timeTicks(), ticks(low, high, Math.floor((bottom - margin.top) / 28)), px, y)
+      const yTicks = ticks(low, high, Math.floor((bottom - margin.top) / 28));
+      sayReading(panel, yTicks);
+      body = axes(panel.svg, size, timeTicks(), yTicks, px, y)
         + `<g clip-path="url(#${clip})">`
         + (panel.guides ?? []).map((at) => `<path class="guide" d="M${margin.left} ${y(at).toFixed(1)}H${size.width}"/>`).join("")
         + panel.series.map((series) => curve(series, px, y)).join("")
@@ -229,7 +244,7 @@ const plots = (() => {
     const extent = (values, least) => {
       const finite = values.filter(Number.isFinite);
       const [low, high] = finite.reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
-      const room = 0.06 * (high - low) + Math.max(0, least - (high - low)) / 2;
+      const room = 0.06 * (high - low) + Math.max(0, leastRange(low, high, least) - (high - low)) / 2;
       return low <= high ? [low - room, high + room] : [-1, 1];
     };
     const [x0, x1] = extent(panel.series.flatMap((series) => series.x), panel.leastX);
@@ -245,8 +260,11 @@ const plots = (() => {
     const whole = view[0] <= start && view[1] >= end;
     setAll(panel.svg, { viewBox: `0 0 ${size.width} ${size.height}` });
     const frameless = { width: size.width, height: size.height - portraitBottom + margin.bottom };
-    panel.svg.innerHTML = axes(panel.svg, frameless, ticks(x0, x1, Math.max(4, Math.floor(size.width / 90))), ticks(y0, y1, 6), x, y)
-      + `<text x="${(margin.left + right) / 2}" y="${size.height - 5}" text-anchor="middle">${panel.xLabel}</text>`
+    const [xTicks, yTicks] = [ticks(x0, x1, Math.max(4, Math.floor(size.width / 90))), ticks(y0, y1, 6)];
+    sayReading(panel, yTicks);
+    const xLabel = `${panel.xName}${xTicks.offset ? ` ${xTicks.offset}` : ""} (${unitWith(xTicks.power, panel.xUnit)})`;
+    panel.svg.innerHTML = axes(panel.svg, frameless, xTicks, yTicks, x, y)
+      + `<text x="${(margin.left + right) / 2}" y="${size.height - 5}" text-anchor="middle">${xLabel}</text>`
       + panel.guides.filter((at) => at > x0 && at < x1)
         .map((at) => `<path class="guide" d="M${x(at).toFixed(1)} ${margin.top}V${bottom}"/>`).join("")
       + panel.series.map((series) => {

@@ -368,7 +368,8 @@ const scene = (() => {
     const most = (0.28 * width) / view.scale;
     const power = 10 ** Math.floor(Math.log10(most));
     const length = power * [5, 2, 1].find((factor) => factor * power <= most);
-    const [unit, factor] = length < 0.01 ? ["mm", 1e3] : length < 1 ? ["cm", 100] : ["m", 1];
+    const [unit, factor] = [["km", 1e-3], ["m", 1], ["cm", 100], ["mm", 1e3], ["µm", 1e6]]
+      .find(([, perMetre]) => length * perMetre >= 0.999) ?? ["nm", 1e9];
     const y = height - 12;
     svgElement("path", { d: `M12 ${y - 4}v8m0 -4h${(length * view.scale).toFixed(1)}m0 -4v8`, class: "scale" }, root);
     const label = svgElement("text", { x: 20 + length * view.scale, y: y + 4 }, root);
@@ -531,7 +532,7 @@ const scene = (() => {
         const [a, b] = [px(x), py(y)];
         const d = `M${(a - dx * length).toFixed(2)} ${(b - dy * length).toFixed(2)}L${a.toFixed(2)} ${b.toFixed(2)}`;
         const arrow = svgElement("path", { d, class: "load", "data-load": load.name, "marker-end": "url(#load-head)" }, layers.loads);
-        svgElement("title", {}, arrow).textContent = `${load.name}: ${number(size, 3)} N`;
+        svgElement("title", {}, arrow).textContent = `${load.name}: ${withPrefix(size, "N")}`;
       }
     }
   }

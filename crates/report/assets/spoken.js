@@ -34,17 +34,18 @@ const spoken = (() => {
     return `${short}: sticks ${percent(stick)}, slips ${percent(slip)}, is open ${percent(1 - stick - slip)} of the time`;
   }
 
-  function ofPortrait({ label, x, y }) {
+  function ofPortrait({ label, x, y }, { xName, xUnit, title, unit }) {
     const [across, up] = [ends(x), ends(y)];
     if (!across || !up) return "no value";
-    return `${label ? `${label}: ` : ""}φ from ${round(x[across[0]])} to ${round(x[across[1]])}°, `
-      + `φ̇ from ${round(y[up[0]])} to ${round(y[up[1]])} rad/s`;
+    const [, rate] = title.match(/: (\S+) over /) ?? [, "its velocity"];
+    return `${label ? `${label}: ` : ""}${xName} from ${round(x[across[0]])} to ${round(x[across[1]])} ${xUnit}, `
+      + `${rate} from ${round(y[up[0]])} to ${round(y[up[1]])} ${unit}`;
   }
 
   /** A plot: its title, unit, and the extremes of its curves. */
   function plot(panel) {
     const unit = panel.unit && !panel.portrait ? ` in ${panel.unit}` : "";
-    const parts = panel.bands ? panel.bands.map(ofBand) : panel.series.map(panel.portrait ? ofPortrait : ofSeries);
+    const parts = panel.bands ? panel.bands.map(ofBand) : panel.series.map((series) => (panel.portrait ? ofPortrait(series, panel) : ofSeries(series)));
     return `${panel.title}${unit}. ${parts.join("; ")}.`;
   }
 

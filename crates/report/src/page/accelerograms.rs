@@ -79,10 +79,10 @@ pub(super) fn spectra(records: &[Arc<RecordScene>]) -> Option<Figure> {
         let lines: Vec<Series> = (0..records.len()).map(line).collect();
         let heights = lines.iter().flat_map(Series::points).map(|point| point.1);
         let axis = Axis::around(label, heights.chain([0.0]).collect::<Vec<_>>(), 1e-9);
-        Panel::new(axis).with(lines)
+        Panel::new(axis).with(lines).note(format!("damping ratio {} %", 100.0 * DAMPING_RATIO))
     };
     let x = Axis::logarithmic("Natural period T (s)", [low, high]).ok()?;
-    let title = "Response spectra of the records, 5 % damping: pseudo-acceleration and relative displacement";
+    let title = "Response spectra of the records, damping ratio 5 %: pseudo-acceleration and relative displacement";
     let figure = Figure::new("spectra", title, x)
         .panel(panel("Pseudo-acceleration Sa (m/s²)", &teeter_record::Response::pseudo_acceleration))
         .panel(panel("Displacement Sd (mm)", &|response| 1e3 * response.displacement));
@@ -126,7 +126,7 @@ pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary])
          <thead><tr><th scope=\"col\">Motion</th><th scope=\"col\">Record</th><th scope=\"col\">Duration<br><small>s</small></th>\
          <th scope=\"col\">PGA<br><small>m/s²</small></th><th scope=\"col\">PGV<br><small>m/s</small></th>\
          <th scope=\"col\">PGD<br><small>m</small></th><th scope=\"col\">Arias intensity<br><small>m/s</small></th>\
-         <th scope=\"col\">5 % to 95 % of it<br><small>s</small></th></tr></thead>\n<tbody>\n",
+         <th scope=\"col\">Significant duration, 5–95 %<br><small>s</small></th></tr></thead>\n<tbody>\n",
     );
     for of in summaries {
         let text = if of.description.is_empty() { of.file.clone() } else { format!("{}: {}", of.file, of.description) };

@@ -55,13 +55,14 @@ const NAMED: usize = 3;
 
 impl LeftOut {
     fn told(&self) -> String {
+        let size = if self.largest == 0.0 { "0".to_owned() } else { format!("{:.0e} {}", self.largest, self.unit) };
         let of = match self.of.len() {
-            0 => String::new(),
+            // The name of the quantity alone: `force`, not `force of`.
+            0 => return format!("{} ({size})", self.what.trim_end_matches(" of")),
             few if few <= NAMED || self.together.is_empty() => format!(" {}", self.of.join(", ")),
             many => format!(" {many} {}", self.together),
         };
         let bound = if self.of.len() > 1 && self.largest > 0.0 { "at most " } else { "" };
-        let size = if self.largest == 0.0 { "0".to_owned() } else { format!("{:.0e} {}", self.largest, self.unit) };
         format!("{}{of} ({bound}{size})", self.what)
     }
 }
@@ -109,7 +110,7 @@ mod tests {
             largest,
             unit: "rad",
         };
-        let text = told(&[left_out("φ of", 1, 3e-12), left_out("slip", 0, 0.0)]);
+        let text = told(&[left_out("φ of", 1, 3e-12), left_out("slip of", 0, 0.0)]);
         assert!(text.ends_with("rounding: φ of b0 (3e-12 rad); slip (0)."), "{text}");
         let text = told(&[left_out("φ of", 2, 3e-12), left_out("x of", 15, 4e-12)]);
         assert!(text.ends_with("φ of b0, b1 (at most 3e-12 rad); x of 15 blocks (at most 4e-12 rad)."), "{text}");

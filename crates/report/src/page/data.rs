@@ -8,7 +8,7 @@ use super::panels::{Panels, Place};
 use super::recorder::{BLOCK_FRAME, MANY_IMPACTS, PageRecorder};
 use super::scenery::Scenery;
 use super::{DIGITS, TIME_DIGITS, means, rounded};
-use crate::Summary;
+use crate::{Summary, with_digits};
 use serde::Serialize;
 use teeter_integrator::ContactState;
 use teeter_scenario::scene::{History, LoadKind, SupportingBody};
@@ -208,8 +208,11 @@ struct CurveData {
 #[derive(Serialize)]
 struct ForceData {
     borders: Vec<f64>,
-    /// Length of the windows of `mean`, s.
-    window: f64,
+    /// Of the unit in which they are plotted: its prefix, and by what N are multiplied.
+    prefix: &'static str,
+    factor: f64,
+    /// Length of the windows of `mean`, with its unit.
+    window: String,
     /// Contacts whose tangential forces are rounding.
     frictionless: Vec<usize>,
     points: Vec<PointForces>,
@@ -276,13 +279,32 @@ fn digits(x: f64) -> f64 {
     rounded(x, DIGITS)
 }
 
+/// The values of a curve: with so many digits that its course is seen, however far from zero it is.
+fn course<'a>(values: impl Iterator<Item = &'a f64> + Clone) -> Vec<f64> {
+    let finite = values.clone().filter(|x| x.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (a.min(x), b.max(x)));
+    let part = (high - low) / low.abs().max(high.abs());
+    // Less than that is rounding, which digits would only show.
+    let more = if part > CONSTANT { (SEEN - part.log10()).ceil() as usize } else { 0 };
+    values.map(|x| rounded(*x, DIGITS.max(more))).collect()
+}
+
+/// A curve that varies by a smaller part of its size is constant.
+const CONSTANT: f64 = 1e-9;
+
+/// A curve has at least this power of ten of steps between its least and its largest value.
+const SEEN: f64 = 5.0;
+
 fn time(t: f64) -> f64 {
     rounded(t, TIME_DIGITS)
 }
 
 fn frames(recorder: &PageRecorder) -> FrameData {
     let scenery = &recorder.scenery;
-    let column = |k: usize| recorder.kept.frames.rows().map(|(_, row)| digits(row[k])).collect();
+    let column = |k: usize| {
+        let values: Vec<f64> = recorder.kept.frames.rows().map(|(_, row)| row[k]).collect();
+        course(values.iter())
+    };
     let blocks = (0..scenery.blocks.len()).map(|k| BLOCK_FRAME * k);
     let mut start = BLOCK_FRAME * scenery.blocks.len();
     let mut moved = start + scenery.beams.iter().map(|beam| beam.points).sum::<usize>();
@@ -460,7 +482,7 @@ fn time_panels(panels: &Panels) -> Vec<PanelData> {
                 label: line.label.clone(),
                 index: line.number,
                 at_borders: line.at_borders,
-                y: line.y.iter().copied().map(digits).collect(),
+                y: course(line.y.iter()),
             })
             .collect(),
     };
@@ -479,7 +501,7 @@ fn portraits(panels: &Panels) -> Vec<PortraitData> {
             .lines
             .iter()
             .map(|line| {
-                let [x, y] = [&line.x, &line.v].map(|values| values.iter().copied().map(digits).collect());
+                let [x, y] = [&line.x, &line.v].map(|values| course(values.iter()));
                 let t = line.t.iter().copied().map(time).collect();
                 PortraitSeries { label: line.label.clone(), index: line.number, t, x, y }
             })
@@ -510,7 +532,9 @@ fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
     });
     ForceData {
         borders: panels.curves.borders().into_iter().map(time).collect(),
-        window: digits(window),
+        prefix: panels.force_unit.0,
+        factor: panels.force_unit.1,
+        window: with_digits(window, "s", 3),
         frictionless: (0..panels.tangential.len()).filter(|pair| !panels.tangential[*pair]).collect(),
         points: points.collect(),
     }

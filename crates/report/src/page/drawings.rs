@@ -3,7 +3,7 @@
 use super::chain::{LastPicture, Thrust, ThrustLine, thrust_lines};
 use super::outline::Outline;
 use super::recorder::{BLOCK_FRAME, PageRecorder};
-use super::rounded;
+use crate::with_digits;
 use teeter_plot::{Axis, Colour, Drawing, Figure, Panel, Series};
 use teeter_scenario::scene::SupportingBody;
 
@@ -70,7 +70,7 @@ fn scene(recorder: &PageRecorder, last: &LastPicture<'_>, title: &str) -> Drawin
 
 /// When, and over how long the forces are means.
 fn time_note([from, to]: [f64; 2]) -> String {
-    format!("At t = {} s; forces are means over the {} s before", rounded(to, 6), rounded(to - from, 3))
+    format!("At t = {}; forces are means over the {} before", with_digits(to, "s", 6), with_digits(to - from, "s", 3))
 }
 
 /// The network of contact forces at the end: between two blocks a line from one centre to the other through the centre of
@@ -104,11 +104,11 @@ pub(super) fn force_chains(recorder: &PageRecorder) -> Option<Drawing> {
     for (class, lines) in classes.into_iter().enumerate().skip(1).filter(|(_, lines)| !lines.is_empty()) {
         drawing = drawing.lines(lines, widest * class as f64 / CLASSES as f64, Colour::Series(1));
     }
-    let least = rounded(0.5 / CLASSES as f64 * largest, 2);
+    let least = with_digits(0.5 / CLASSES as f64 * largest, "N", 2);
     Some(
         drawing
-            .key(Colour::Series(1), widest, format!("{} N, the largest force", rounded(largest, 3)))
-            .note(format!("{}; those below {least} N are left out", time_note(last.interval))),
+            .key(Colour::Series(1), widest, format!("{}, the largest force", with_digits(largest, "N", 3)))
+            .note(format!("{}; those below {least} are left out", time_note(last.interval))),
     )
 }
 

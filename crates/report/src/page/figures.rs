@@ -4,9 +4,10 @@ use super::accelerograms;
 use super::bands::BAND_COLUMNS;
 use super::crowd::CrowdCurve;
 use super::drawings;
-use super::panels::{Panels, Place, Portrait, PortraitLine, TimePanel, prefix};
+use super::panels::{Panels, Place, Portrait, PortraitLine, TimePanel, prefix, time_unit};
 use super::recorder::{MANY_IMPACTS, PageRecorder};
-use super::{means, rounded, span};
+use super::{means, span};
+use crate::{shortest, with_digits};
 use teeter_integrator::ContactState;
 use teeter_plot::{Axis, Band, Colour, Figure, Legend, Panel, Series};
 
@@ -95,7 +96,9 @@ struct Plots<'a> {
 impl Plots<'_> {
     fn over_time(&self, id: &str, title: &str, panels: Vec<Panel>) -> Figure {
         let (start, end) = (self.t[0], self.t[self.t.len() - 1]);
-        let x = Axis::between("Time t (s)", start, if end > start { end } else { start + 1.0 });
+        let end = if end > start { end } else { start + 1.0 };
+        let (unit, factor) = time_unit(end - start);
+        let x = Axis::between(format!("Time t ({unit})"), start, end).shown_in(factor);
         panels.into_iter().fold(Figure::new(id, title, x), Figure::panel)
     }
 
@@ -195,7 +198,9 @@ impl Plots<'_> {
         let window = means::window(&self.panels.curves);
         let curves = &self.panels.forces;
         let strongest = curves.iter().flatten().flat_map(|forces| &forces.normal).fold(0.0, |most: f64, f| f.max(most));
-        let least = 1e-6 * strongest;
+        let (prefix, factor) = self.panels.force_unit;
+        let unit = format!("{prefix}N");
+        let least = 1e-6 * strongest * factor;
         let mut panels = Vec::new();
         for (pair, contact) in scenery.contacts.iter().enumerate() {
             let (mut normal, mut means, mut tangential, mut bands) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -204,7 +209,7 @@ impl Plots<'_> {
                 let label = &drawn.label;
                 let step = |y: &[f64], label: &str| {
                     let end = borders.last().copied().unwrap_or_default();
-                    Series::staircase(label, borders.iter().copied().zip(y.iter().copied()), end).number(point)
+                    Series::staircase(label, borders.iter().copied().zip(y.iter().map(|y| factor * y)), end).number(point)
                 };
                 let mean = means::normal(&self.panels.curves, forces, window);
                 // The raw values stay behind their mean, which then has the name.
@@ -213,7 +218,8 @@ impl Plots<'_> {
                 } else {
                     step(&forces.normal, label)
                 });
-                means.extend(mean.map(|mean| Series::line(label, borders.iter().copied().zip(mean)).number(point)));
+                let scaled = |mean: Vec<f64>| borders.iter().copied().zip(mean.into_iter().map(|y| factor * y)).collect::<Vec<_>>();
+                means.extend(mean.map(|mean| Series::line(label, scaled(mean)).number(point)));
                 tangential.push(step(&forces.tangential, label));
                 bands.push(Band::new(label, stretches(&borders, &forces.state)));
             }
@@ -224,12 +230,12 @@ impl Plots<'_> {
                 if what == "Tangential" && !self.panels.tangential[pair] {
                     continue;
                 }
-                let (range, cut) = cut(&lines, least, "N");
+                let (range, cut) = cut(&lines, least, &unit);
                 let name = (scenery.contacts.len() > 1).then(|| contact.name.clone());
                 let meant = (what == "Normal" && !means.is_empty())
-                    .then(|| format!("pale: raw; mean over {} ms", rounded(1e3 * window, 3)));
+                    .then(|| format!("pale: raw; mean over {}", with_digits(window, "s", 3)));
                 let note = [name, meant, cut].into_iter().flatten().collect::<Vec<_>>().join("; ");
-                let y = cut_axis(&format!("{what} force (N)"), range, &lines, least);
+                let y = cut_axis(&format!("{what} force ({unit})"), range, &lines, least);
                 let note = Some(note).filter(|note| !note.is_empty());
                 if what == "Normal" {
                     lines.append(&mut means);
@@ -279,7 +285,7 @@ fn cut(lines: &[Series], least: f64, unit: &str) -> (Option<(f64, f64)>, Option<
     let limit = 0.5 * PEAK * usual;
     let negative = values(lines).any(|y| y < -0.01 * limit);
     let low = if negative { -limit } else { -0.06 * limit };
-    (Some((low, limit)), Some(format!("peaks cut, up to {} {unit}", rounded(largest, 3))))
+    (Some((low, limit)), Some(format!("peaks cut, up to {} {unit}", shortest(largest, 3))))
 }
 
 /// The y axis of lines that may have been cut to a range.

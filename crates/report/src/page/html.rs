@@ -7,7 +7,7 @@ use super::recorder::PageRecorder;
 use super::rocking::{HalfCycle, half_cycles};
 use super::{data, rounded, span, thrust};
 use crate::summary::{BeamSummary, RemovedSummary};
-use crate::{Summary, with_digits};
+use crate::{Summary, shortest, with_digits};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -65,7 +65,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("records", accelerograms::section(&recorder.scenery.records, &summary.records)),
         ("borne", borne(recorder, summary)),
         ("thrust", thrust::section(recorder)),
-        ("rocking", rocking(&half_cycles(recorder, summary))),
+        ("rocking", rocking(&half_cycles(recorder, summary), recorder, summary.dt)),
         ("model", model(summary)),
         ("numbers", numbers(&values)),
         ("settings", escaped(scene_toml)),
@@ -151,6 +151,8 @@ const NUMERIC: usize = 7;
 fn verdict(summary: &Summary) -> String {
     let mut html = String::new();
     for (number, part) in summary.headline.split('`').enumerate() {
+        // The terminal has a title before it, the page has not.
+        let part = &if number == 0 { capitalised(part) } else { part.to_owned() };
         // A number stays with its name and its unit.
         let part = escaped(part).replace(" = ", "\u{a0}=\u{a0}").replace(" ms", "\u{a0}ms");
         if number % 2 == 1 {
@@ -163,6 +165,28 @@ fn verdict(summary: &Summary) -> String {
         _ = write!(html, "; the run stopped there ({})", reason.word());
     }
     html
+}
+
+/// With a capital letter at the start.
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// Text for HTML in which what stands between backquotes is code.
+fn with_code(text: &str) -> String {
+    let parts = text.split('`').enumerate();
+    let code = |(number, part)| {
+        let part = escaped(part);
+        if number % 2 == 1 { format!("<code>{part}</code>") } else { part }
+    };
+    parts.map(code).collect()
+}
+
+/// Energy that is lost; what is rounding beside the scene's energy isn't shown as a loss.
+fn lost(energy: &crate::summary::EnergySummary) -> String {
+    let counts = content::holds(energy.lost.abs(), energy.scale);
+    with_prefix(if counts { energy.lost } else { 0.0 }, "J")
 }
 
 fn tiles(values: &Numbers, summary: &Summary) -> String {
@@ -180,7 +204,7 @@ fn tiles(values: &Numbers, summary: &Summary) -> String {
             "max_phi_over_alpha" => ("Largest φ/α", summary.max_phi_over_alpha.map(share_of_critical_angle)),
             "overturned_at" => ("First overturned at", seconds(summary.overturned_at)),
             "rests_from" => ("All at rest from", seconds(summary.rests_from)),
-            "energy.lost" => ("Energy lost", Some(with_prefix(summary.energy.lost, "J"))),
+            "energy.lost" => ("Energy lost", Some(lost(&summary.energy))),
             "impact_count" => ("Impacts", Some(summary.impact_count.to_string())),
             "horizon" => ("Predictable up to", seconds(summary.horizon)),
             "reclosure_count" => ("Contacts lost and found again", Some(summary.reclosure_count.to_string())),
@@ -207,13 +231,31 @@ fn tiles(values: &Numbers, summary: &Summary) -> String {
 fn numbers(values: &Numbers) -> String {
     let mut html = String::new();
     for path in values.others() {
-        let text = escaped(&values.text(&path));
+        let text = values.text(&path);
+        // For people; the file, and `data-value`, have all digits.
+        let shown = match (text.parse::<f64>(), unit_of(&path)) {
+            (Ok(x), Some(unit)) => with_digits(x, unit, 6).replace('-', "\u{2212}"),
+            (Ok(x), None) if text.contains(['.', 'e']) && path != "version" => {
+                shortest(x, 3).replace('-', "\u{2212}")
+            }
+            _ => with_code(&text),
+        };
+        let text = escaped(&text);
         let _ = writeln!(
             html,
-            "<tr><th scope=\"row\">{path}</th><td data-summary=\"{path}\" data-value=\"{text}\">{text}</td></tr>"
+            "<tr><th scope=\"row\">{path}</th><td data-summary=\"{path}\" data-value=\"{text}\">{shown}</td></tr>"
         );
     }
     html
+}
+
+/// The unit of a number of the summary, of those that have one.
+fn unit_of(path: &str) -> Option<&'static str> {
+    match path {
+        "dt" | "t" => Some("s"),
+        "energy.largest_residual" | "energy.positive_contact_work.steps" => None,
+        _ => path.starts_with("energy.").then_some("J"),
+    }
 }
 
 fn subtitle(summary: &Summary) -> String {
@@ -221,11 +263,11 @@ fn subtitle(summary: &Summary) -> String {
     let ended = ended.as_str().unwrap_or_default().to_owned();
     let class = if ["complete", "stopped"].contains(&ended.as_str()) { "" } else { " class=\"bad\"" };
     format!(
-        "{} · {} steps of {} · t = {} s · <span{class}>{ended}</span> · teeter {}",
+        "{} · {} steps of {} · t = {} · <span{class}>{ended}</span> · teeter {}",
         escaped(summary.scheme),
         summary.steps,
         with_prefix(summary.dt, "s"),
-        rounded(summary.steps as f64 * summary.dt, 6),
+        with_digits(summary.steps as f64 * summary.dt, "s", 6),
         escaped(summary.version)
     )
 }
@@ -243,7 +285,7 @@ fn warnings(summary: &Summary) -> String {
             html,
             "<li data-warning=\"{}\"><span>{}</span>{count}</li>",
             escaped(&warning.code),
-            escaped(&warning.text)
+            with_code(&warning.text)
         );
     }
     html.push_str("</ul>\n</section>");
@@ -256,27 +298,48 @@ const ROWS: usize = 300;
 /// Rows that are seen without unfolding the others.
 const UNFOLDED: usize = 20;
 
-fn rocking(cycles: &[HalfCycle]) -> String {
+/// Decimals with which the largest of the values of a column has so many digits.
+fn decimals(values: impl Iterator<Item = f64>, digits: i32) -> usize {
+    let largest = values.fold(0.0, |most: f64, x| most.max(x.abs()));
+    if largest > 0.0 { (digits - 1 - largest.log10().floor() as i32).clamp(0, 12) as usize } else { 0 }
+}
+
+fn rocking(cycles: &[HalfCycle], recorder: &PageRecorder, dt: f64) -> String {
     if cycles.is_empty() {
         return String::new();
     }
     let mut html = "<section id=\"rocking\" class=\"panel\" aria-labelledby=\"rocking-title\">\n\
         <h3 id=\"rocking-title\">Rocking, half cycle by half cycle</h3>\n"
         .to_owned();
+    let scenery = &recorder.scenery;
     // With one block its name would be a column of repetitions.
-    let several = cycles.iter().any(|cycle| cycle.body != cycles[0].body);
+    let several = scenery.blocks.len() > 1;
+    let (angle_unit, per_radian) = (scenery.display.angle.symbol(), scenery.display.angle.per_radian());
+    // A step is told from the next.
+    let of_times = decimals(std::iter::once(dt), 2).max(5);
+    let of_rates = decimals(cycles.iter().filter_map(|cycle| cycle.omega).flatten(), 5);
+    let of_peaks = decimals(cycles.iter().filter_map(|cycle| cycle.peak_after).map(|peak| peak * per_radian), 4);
     let mut head =
         "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"rocking-title\"><table>\n<thead><tr>"
             .to_owned();
     head.push_str(if several { "<th scope=\"col\">Block</th>" } else { "" });
     head.push_str(
-        "<th scope=\"col\">φ = 0 at<br><small>s</small></th><th scope=\"col\">φ̇⁻<br><small>rad/s</small></th>\
+        &"<th scope=\"col\">φ = 0 at<br><small>s</small></th><th scope=\"col\">φ̇⁻<br><small>rad/s</small></th>\
         <th scope=\"col\">φ̇⁺<br><small>rad/s</small></th><th scope=\"col\">φ̇⁺/φ̇⁻</th>\
-        <th scope=\"col\">Housner</th><th scope=\"col\">Next peak<br><small>°</small></th>\
-        <th scope=\"col\">Peak to peak</th></tr></thead>\n<tbody>\n",
+        <th scope=\"col\">Housner</th><th scope=\"col\">Next peak<br><small>{angle}</small></th>\
+        <th scope=\"col\">Peak to peak</th></tr></thead>\n<tbody>\n"
+            .replace("{angle}", angle_unit),
     );
     let fixed = |x: Option<f64>, digits: usize| {
-        x.map_or("–".to_owned(), |x| format!("{x:.digits$}").replace('-', "\u{2212}"))
+        // No negative zero.
+        x.map_or("–".to_owned(), |x| {
+            let text = format!("{x:.digits$}");
+            if text.trim_start_matches('-').trim_matches(['0', '.']).is_empty() {
+                text.trim_start_matches('-').to_owned()
+            } else {
+                text.replace('-', "\u{2212}")
+            }
+        })
     };
     html.push_str(&head);
     for (number, cycle) in cycles.iter().take(ROWS).enumerate() {
@@ -292,12 +355,12 @@ fn rocking(cycles: &[HalfCycle]) -> String {
             "<tr data-body=\"{name}\" data-t=\"{}\">{row_head}<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>\
              <td>{}</td><td>{}</td></tr>",
             cycle.t,
-            fixed(Some(cycle.t), 5),
-            fixed(cycle.omega.map(|omega| omega[0]), 4),
-            fixed(cycle.omega.map(|omega| omega[1]), 4),
+            fixed(Some(cycle.t), of_times),
+            fixed(cycle.omega.map(|omega| omega[0]), of_rates),
+            fixed(cycle.omega.map(|omega| omega[1]), of_rates),
             fixed(cycle.ratio(), 4),
             fixed(cycle.housner, 4),
-            fixed(cycle.peak_after.map(f64::to_degrees), 3),
+            fixed(cycle.peak_after.map(|peak| peak * per_radian), of_peaks),
             fixed(cycle.decay(), 4),
         );
     }
@@ -344,12 +407,12 @@ fn borne(recorder: &PageRecorder, summary: &Summary) -> String {
         });
         let name = if several { format!("{}: ", escaped(&borne.beam)) } else { String::new() };
         Some(format!(
-            "<p data-beam=\"{}\" data-stress=\"{}\">{name}largest normal stress {} at x = {} m, t = {} s{}</p>\n",
+            "<p data-beam=\"{}\" data-stress=\"{}\">{name}largest normal stress {} at x = {}, t = {}{}</p>\n",
             escaped(&borne.beam),
             largest.stress,
-            format_args!("{} MPa", rounded(1e-6 * largest.stress, 4)),
-            rounded(largest.x, 4),
-            rounded(largest.t, 6),
+            with_digits(largest.stress, "Pa", 4),
+            with_digits(largest.x, "m", 4),
+            with_digits(largest.t, "s", 6),
             part.unwrap_or_default()
         ))
     });
@@ -441,7 +504,7 @@ fn model(summary: &Summary) -> String {
         row("Left out", &model.left_out.iter().map(|text| escaped(text)).collect::<Vec<_>>().join("<br>"));
     }
     if !model.removed.is_empty() {
-        let told = |removed: &RemovedSummary| format!("{}: {}", escaped(&removed.what), escaped(&removed.why));
+        let told = |removed: &RemovedSummary| format!("{}: {}", with_code(&removed.what), with_code(&removed.why));
         row("Not needed", &model.removed.iter().map(told).collect::<Vec<_>>().join("<br>"));
     }
     html
@@ -463,8 +526,8 @@ fn scientific(x: f64) -> String {
     }
     let text = format!("{x:.1e}");
     match text.split_once('e') {
-        Some((digits, "0")) => digits.to_owned(),
-        Some((digits, power)) => format!("{digits} × 10<sup>{}</sup>", power.replace('-', "\u{2212}")),
+        Some((digits, "0")) => digits.replace('-', "\u{2212}"),
+        Some((digits, power)) => format!("{} × 10<sup>{}</sup>", digits.replace('-', "\u{2212}"), power.replace('-', "\u{2212}")),
         None => text,
     }
 }

@@ -1,7 +1,7 @@
 //! The plots over time that the page and the figures have in common: which quantities, of which bodies, in which units, by the
 //! rule of [`content`](super::content).
 
-use super::content::LeftOut;
+use super::content::{LeftOut, largest};
 use super::curves::{Curves, ForceCurve};
 use super::recorder::{NUMBERS, PageRecorder};
 use teeter_scenario::scene::LengthUnit;
@@ -87,21 +87,38 @@ pub(crate) struct Panels {
     pub(crate) panels: Vec<TimePanel>,
     pub(crate) portraits: Vec<Portrait>,
     pub(crate) left_out: Vec<LeftOut>,
+    /// The prefix of the unit of all contact forces, with its factor.
+    pub(crate) force_unit: (&'static str, f64),
     /// Whether tangential forces are more than rounding, by contacts.
     pub(crate) tangential: Vec<bool>,
 }
 
-/// The unit of lengths on an axis, with its number to a metre: the scene's, unless it makes numbers too small.
+/// Numbers of a length as large as this are in a larger unit than the scene's.
+const LARGE: f64 = 1e4;
+
+/// The unit of lengths on an axis, with its number to a metre: the scene's, unless it makes numbers too small or too large.
 pub(crate) fn length_unit(of: LengthUnit, largest: f64) -> (&'static str, f64) {
-    let units = [(of.word(), of.per_metre()), ("mm", 1e3), ("µm", 1e6), ("nm", 1e9)];
+    let own = (of.word(), of.per_metre());
+    if largest * own.1 >= LARGE {
+        return if largest >= LARGE { ("km", 1e-3) } else { ("m", 1.0) };
+    }
+    let units = [own, ("mm", 1e3), ("µm", 1e6), ("nm", 1e9)];
     let fits = |(_, factor): &&(&'static str, f64)| largest == 0.0 || largest * factor >= 0.5;
     units.iter().find(fits).copied().unwrap_or(("nm", 1e9))
 }
 
 /// The prefix of a unit, with its factor, that makes the largest of some values a handy number.
 pub(crate) fn prefix(largest: f64) -> (&'static str, f64) {
-    let prefixes = [("k", 1e-3), ("", 1.0), ("m", 1e3), ("µ", 1e6), ("n", 1e9)];
-    prefixes.into_iter().find(|(_, factor)| largest * factor >= 0.5).unwrap_or(("", 1.0))
+    let large = [("G", 1e-9), ("M", 1e-6), ("k", 1e-3), ("", 1.0)];
+    let small = [("m", 1e3), ("µ", 1e6), ("n", 1e9), ("p", 1e12), ("f", 1e15), ("a", 1e18), ("z", 1e21)];
+    large.into_iter().chain(small).find(|(_, factor)| largest * factor >= 0.5).unwrap_or(("", 1.0))
+}
+
+/// The unit of a time axis as long as `duration`, with its number to a second.
+pub(crate) fn time_unit(duration: f64) -> (&'static str, f64) {
+    let units = [("s", 1.0), ("ms", 1e3), ("µs", 1e6)];
+    // 0.1 s is still read well in seconds.
+    units.into_iter().find(|(_, factor)| duration * factor >= 0.099).unwrap_or(("ns", 1e9))
 }
 
 impl Panels {
@@ -111,6 +128,7 @@ impl Panels {
             let forces = forces(&curves);
             let mut panels = Self {
                 tangential: vec![true; recorder.scenery.contacts.len()],
+                force_unit: prefix(largest(forces.iter().flatten().flat_map(|forces| &forces.normal))),
                 curves,
                 forces,
                 panels: Vec::new(),
@@ -173,5 +191,15 @@ mod tests {
         assert_eq!(length_unit(LengthUnit::Centimetre, 1.2e-3), ("mm", 1e3));
         assert_eq!(length_unit(LengthUnit::Metre, 3e-7), ("nm", 1e9));
         assert_eq!(length_unit(LengthUnit::Millimetre, 0.0), ("mm", 1e3));
+        // A block that flies off, in a scene of centimetres.
+        assert_eq!(length_unit(LengthUnit::Centimetre, 99.0), ("cm", 100.0));
+        assert_eq!(length_unit(LengthUnit::Centimetre, 6e3), ("m", 1.0));
+        assert_eq!(length_unit(LengthUnit::Metre, 6e4), ("km", 1e-3));
+    }
+
+    #[test]
+    fn any_size_has_a_unit_that_suits() {
+        assert_eq!([4e9, 6.8e8, 2e4, 400.0, 0.2, 4e-21].map(|x| prefix(x).0), ["G", "G", "k", "", "m", "z"]);
+        assert_eq!([3600.0, 0.1, 1e-3, 3e-6, 1e-9].map(|t| time_unit(t).0), ["s", "s", "ms", "µs", "ns"]);
     }
 }

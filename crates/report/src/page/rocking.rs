@@ -19,7 +19,7 @@ pub struct HalfCycle {
     /// ratio of the two is then near 1, and the peaks tell what is lost.
     pub omega: Option<[f64; 2]>,
     /// Housner's ratio for this block on rigid ground, 1 − (3/2) sin²α; none for a block so wide that it would be negative: it doesn't rock on, but
-    /// stays on its base.
+    /// stays on its base. None either for a block that touches others, and where none of its corners landed.
     pub housner: Option<f64>,
     /// The peak before, rad.
     pub peak_before: Option<f64>,
@@ -57,6 +57,13 @@ const NEAR: f64 = 0.25;
 const LEFT: usize = 0;
 const RIGHT: usize = 1;
 
+/// Whether a passage without an impact near it, as one over a soft contact, is one of a rocking block: both peaks are known, and
+/// within the critical angle. A stone that tumbles passes φ = 0, too.
+fn is_swing(before: Option<f64>, after: Option<f64>, alpha: f64) -> bool {
+    let within = |peak: f64| (LEAST * alpha..alpha).contains(&peak.abs());
+    before.is_some_and(within) && after.is_some_and(within)
+}
+
 /// The half cycles of a run, block by block.
 #[must_use]
 pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle> {
@@ -64,6 +71,7 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
     for (number, block) in recorder.scenery.blocks.iter().enumerate() {
         // A polygon has no base to rock on that would say which of its corners land.
         let Some(alpha) = block.alpha else { continue };
+        let touches_blocks = recorder.scenery.touches_blocks(number);
         let mut peaks = summary.peaks.iter().filter(|peak| peak.body == block.name).peekable();
         for crossing in summary.crossings.iter().filter(|crossing| crossing.body == block.name) {
             let before = peaks.next();
@@ -78,14 +86,21 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
                 let nearest = impacts.min_by(|a, b| distance(a.t).total_cmp(&distance(b.t)))?;
                 (distance(nearest.t) <= NEAR * (crossing.t - peak.t)).then_some(nearest.omega)
             });
+            // It bounced back, and passed the upright without an impact of its own.
+            let omega = omega.filter(|omega| omega[0] * omega[1] >= 0.0);
+            let peak_after = peaks.peek().map(|peak| peak.phi);
+            if omega.is_none() && !is_swing(before.map(|peak| peak.phi), peak_after, alpha) {
+                continue;
+            }
             cycles.push(HalfCycle {
                 body: block.name.clone(),
                 t: crossing.t,
                 omega,
-                housner: Some(1.0 - 1.5 * alpha.sin().powi(2)).filter(|ratio| *ratio > 0.0),
+                housner: Some(1.0 - 1.5 * alpha.sin().powi(2))
+                    .filter(|ratio| *ratio > 0.0 && omega.is_some() && !touches_blocks),
                 alpha,
                 peak_before: before.map(|peak| peak.phi),
-                peak_after: peaks.peek().map(|peak| peak.phi),
+                peak_after,
             });
         }
     }

@@ -182,6 +182,14 @@ fn is_middle(x: f64, span: f64) -> bool {
 }
 
 impl Scenery {
+    /// Whether a block may touch other blocks.
+    pub(crate) fn touches_blocks(&self, block: usize) -> bool {
+        self.listed.iter().any(|(one, other)| match other {
+            SupportingBody::Block(other) => [*one, *other].contains(&block),
+            SupportingBody::Ground | SupportingBody::Beam(_) => false,
+        }) || self.crowd.is_some()
+    }
+
     pub(crate) fn new(scene: &Scene, layout: &Layout) -> Self {
         let blocks = scene.blocks.iter().map(|block| BlockDrawn {
             name: block.name.clone(),

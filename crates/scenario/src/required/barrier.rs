@@ -348,12 +348,12 @@ impl Barrier {
         Removed {
             what: format!("contact `{}`: the upper corners of `{name}`", contact.name),
             why: format!(
-                "the total energy is {:.6} J, and {:.6} J would be needed to tilt `{name}` by its critical angle, {:.2} deg; up to {:.6} J it stays \
+                "the total energy is {}, and {} would be needed to tilt `{name}` by its critical angle, {:.2} deg; up to {} it stays \
                  within {:.2} deg. The run watches that, and that penetration stays under {}",
-                self.energy,
-                well.barrier,
+                with_digits(self.energy, "J", 6),
+                with_digits(well.barrier, "J", 6),
                 well.critical_angle.to_degrees(),
-                self.limits.energy,
+                with_digits(self.limits.energy, "J", 6),
                 well.angle.to_degrees(),
                 with_digits(self.limits.penetration, "m", 2)
             ),

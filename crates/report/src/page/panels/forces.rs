@@ -32,13 +32,13 @@ impl Panels {
             let force = largest(points.iter().flat_map(|(_, _, forces)| &forces.tangential));
             self.tangential[pair] = holds(force, strongest);
             if !self.tangential[pair] {
-                left_out.push(("tangential force", of(), force, "N"));
+                left_out.push(("tangential force of", of(), force, "N"));
             }
             let reach = scenery.blocks[contact.block].reach;
             let slipping: Vec<_> = points.iter().filter(|(_, _, forces)| holds(largest(&forces.slip), reach)).collect();
             if slipping.is_empty() {
                 let most = largest(points.iter().flat_map(|(_, _, forces)| &forces.slip));
-                left_out.push(("slip", of(), most, "m"));
+                left_out.push(("slip of", of(), most, "m"));
                 continue;
             }
             let most = largest(slipping.iter().flat_map(|(_, _, forces)| &forces.slip));
