@@ -35,6 +35,7 @@ pub(crate) use recorder::Kept;
 pub use recorder::PageRecorder;
 pub use rocking::{HalfCycle, half_cycles};
 pub use teeter_plot::escaped;
+pub(crate) use figures::is_pair_figure;
 pub(crate) use vtk::is_vtk_picture;
 pub use vtk::{VTK_SERIES, VtkRecorder};
 

@@ -2,7 +2,7 @@
 
 use crate::checkpoint::CHECKPOINT;
 use crate::lock::FolderLock;
-use crate::page::{VTK_SERIES, is_vtk_picture};
+use crate::page::{VTK_SERIES, is_pair_figure, is_vtk_picture};
 use crate::table::Table;
 use std::fs;
 use std::io::{self, Write};
@@ -168,10 +168,10 @@ impl Results {
         if let Some((_, command)) = mark {
             return Err(ResultsError::OfAnother { folder: folder.to_owned(), command });
         }
-        let pictures = if files.contains(&VTK_SERIES) { pictures_beside(&folder.join(VTK_SERIES)) } else { Vec::new() };
+        let series = files.iter().flat_map(|file| members_beside(&folder.join(file)));
         let named = files.iter().map(|file| folder.join(file)).filter(|path| is_there(path));
         // First of all, as the series that lists them is told of by its name.
-        let old: Vec<PathBuf> = pictures.into_iter().chain(named).collect();
+        let old: Vec<PathBuf> = series.chain(named).collect();
         if !old.is_empty() && !force {
             let resumable = old.contains(&folder.join(CHECKPOINT));
             let error = if resumable { ResultsError::Resumable } else { ResultsError::Exists };
@@ -361,12 +361,22 @@ fn is_there(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok()
 }
 
-/// The numbered pictures of a series, by their names: of how many, no list of files can know.
-fn pictures_beside(series: &Path) -> Vec<PathBuf> {
+/// The pictures of a series, or the figures of single pairs, that belong to a file, by their names: of how many, no list of files
+/// can know.
+fn members_beside(series: &Path) -> Vec<PathBuf> {
+    let is_member: &dyn Fn(&str) -> bool = if series.ends_with(VTK_SERIES) {
+        &is_vtk_picture
+    } else if series.ends_with("figures/contact_forces.svg") {
+        &|name| is_pair_figure("contact_forces", name)
+    } else if series.ends_with("figures/slip.svg") {
+        &|name| is_pair_figure("slip", name)
+    } else {
+        return Vec::new();
+    };
     let entries = series.parent().and_then(|folder| fs::read_dir(folder).ok());
     let names = entries.into_iter().flatten().flatten().map(|entry| entry.path());
     let mut pictures: Vec<PathBuf> =
-        names.filter(|path| path.file_name().and_then(|name| name.to_str()).is_some_and(is_vtk_picture)).collect();
+        names.filter(|path| path.file_name().and_then(|name| name.to_str()).is_some_and(is_member)).collect();
     pictures.sort();
     pictures
 }

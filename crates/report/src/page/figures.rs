@@ -2,6 +2,7 @@
 
 use super::accelerograms;
 use super::bands::BAND_COLUMNS;
+use super::content::largest;
 use super::crowd::CrowdCurve;
 use super::drawings;
 use super::panels::{Panels, Place, Portrait, PortraitLine, TimePanel, prefix, time_unit};
@@ -40,8 +41,11 @@ pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
     if let Some(figure) = span::shapes(recorder, "shapes") {
         add("shapes", figure);
     }
-    if let Some(figure) = plots.contact_forces() {
-        add("contact_forces", figure);
+    for (name, figure) in plots.contact_forces() {
+        add(&name, figure);
+    }
+    for (name, figure) in plots.slips() {
+        add(&name, figure);
     }
     for portrait in &panels.portraits {
         add(portrait.id, plots.portrait(portrait));
@@ -50,7 +54,6 @@ pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
         add("envelopes", figure);
     }
     for (file, ids, title) in [
-        ("slip", ["slip-", "slip-"], "Slip of the contacts over time"),
         ("section_forces", ["section-", "section-"], "What beams bear over time"),
         ("energy", ["energy", "works"], "Energies and works over time"),
     ] {
@@ -192,7 +195,39 @@ impl Plots<'_> {
         self.crowd_figure("omega", "Angular velocity of the bodies over time", "Angular velocity φ̇ (rad/s)", lines)
     }
 
-    fn contact_forces(&self) -> Option<Figure> {
+    /// Of one pair or two a figure of all; of more one of each, as all together wouldn't fit a page: of [`MOST_PAIRS`]
+    /// at most, those with the largest values.
+    fn by_pairs(&self, file: &str, title: &str, pairs: Vec<(usize, f64, Vec<Panel>)>) -> Vec<(String, Figure)> {
+        if pairs.is_empty() {
+            return Vec::new();
+        }
+        if pairs.len() <= TOGETHER {
+            let panels = pairs.into_iter().flat_map(|(_, _, panels)| panels).collect();
+            return vec![(file.to_owned(), self.over_time(file, title, panels))];
+        }
+        let mut sizes: Vec<f64> = pairs.iter().map(|(_, size, _)| *size).collect();
+        sizes.sort_by(|a, b| b.total_cmp(a));
+        let least = sizes[MOST_PAIRS.min(sizes.len()) - 1];
+        let strongest = pairs.into_iter().filter(|(_, size, _)| *size >= least).take(MOST_PAIRS);
+        let figure = |(pair, _, panels): (usize, f64, Vec<Panel>)| {
+            let contact = &self.recorder.scenery.contacts[pair];
+            let name = pair_file(file, &self.recorder.scenery.blocks[contact.block].name, &contact.surface);
+            let figure = self.over_time(&name, title, panels);
+            (name, figure)
+        };
+        strongest.map(figure).collect()
+    }
+
+    fn slips(&self) -> Vec<(String, Figure)> {
+        let panels = self.panels.panels.iter().filter_map(|panel| Some((panel.of_contact.as_ref()?.0, panel)));
+        let pairs = panels.map(|(pair, panel)| {
+            let most = largest(panel.lines.iter().flat_map(|line| &line.y)) / length_per_metre(&panel.unit);
+            (pair, most, vec![self.time_panel(panel)])
+        });
+        self.by_pairs("slip", "Slip of the contacts over time", pairs.collect())
+    }
+
+    fn contact_forces(&self) -> Vec<(String, Figure)> {
         let scenery = &self.recorder.scenery;
         let borders = self.panels.curves.borders();
         let window = means::window(&self.panels.curves);
@@ -201,7 +236,7 @@ impl Plots<'_> {
         let (prefix, factor) = self.panels.force_unit;
         let unit = format!("{prefix}N");
         let least = 1e-6 * strongest * factor;
-        let mut panels = Vec::new();
+        let mut pairs = Vec::new();
         for (pair, contact) in scenery.contacts.iter().enumerate() {
             let (mut normal, mut means, mut tangential, mut bands) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
             for (point, drawn) in contact.points.iter().enumerate() {
@@ -226,6 +261,8 @@ impl Plots<'_> {
             if normal.is_empty() {
                 continue;
             }
+            let mut panels = Vec::new();
+            let strongest = values(&normal).fold(0.0, f64::max);
             for (what, mut lines) in [("Normal", normal), ("Tangential", tangential)] {
                 if what == "Tangential" && !self.panels.tangential[pair] {
                     continue;
@@ -243,8 +280,38 @@ impl Plots<'_> {
                 panels.push(self.marked(Panel::new(y).with(lines).telling_apart(), Some(pair)).note(note));
             }
             panels.push(Panel::bands(bands, [(STICK, "stick"), (SLIP, "slip"), (Colour::Paper, "open")]));
+            pairs.push((pair, strongest, panels));
         }
-        (!panels.is_empty()).then(|| self.over_time("contact_forces", "Contact forces on the blocks over time", panels))
+        self.by_pairs("contact_forces", "Contact forces on the blocks over time", pairs)
+    }
+}
+
+/// Pairs whose contact forces are in one figure.
+const TOGETHER: usize = 2;
+
+/// Most pairs with a figure each.
+const MOST_PAIRS: usize = 24;
+
+/// What the figure of one of many pairs is called, without its ending.
+fn pair_file(file: &str, block: &str, surface: &str) -> String {
+    format!("{file}-{block}-on-{surface}")
+}
+
+/// Whether a file of that name is the figure of one of many pairs, as `contact_forces` or `slip`.
+pub(crate) fn is_pair_figure(file: &str, name: &str) -> bool {
+    let pair = name.strip_prefix(file).and_then(|rest| rest.strip_prefix('-')?.strip_suffix(".svg"));
+    pair.is_some_and(|pair| pair.split_once("-on-").is_some_and(|(block, surface)| !block.is_empty() && !surface.is_empty()))
+}
+
+/// Numbers in a unit of a length axis to a metre.
+fn length_per_metre(unit: &str) -> f64 {
+    match unit {
+        "km" => 1e-3,
+        "cm" => 1e2,
+        "mm" => 1e3,
+        "µm" => 1e6,
+        "nm" => 1e9,
+        _ => 1.0,
     }
 }
 

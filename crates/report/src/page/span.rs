@@ -3,7 +3,7 @@
 use super::content::{holds, largest};
 use super::panels::{length_unit, prefix};
 use super::recorder::{BLOCK_FRAME, PageRecorder};
-use super::rounded;
+use crate::with_digits;
 use teeter_plot::{Axis, Figure, Legend, Panel, Series, Theme};
 
 /// Widths of the figures on the page, mm: where there is room, and on a telephone.
@@ -109,7 +109,7 @@ pub(super) fn shapes(recorder: &PageRecorder, id: &str) -> Option<Figure> {
                 let word = if word.is_empty() { String::new() } else { format!("{word}, ") };
                 let length = beam.span * unit.per_metre();
                 let points = smooth(&row[own.clone()]).into_iter().map(|(part, w)| (length * part, factor * w));
-                Series::line(format!("{word}t = {} s", rounded(t, 4)), points)
+                Series::line(format!("{word}t = {}", with_digits(t, "s", 4)), points)
             });
         let lines: Vec<Series> = lines.collect();
         let y = lines.iter().flat_map(Series::points).map(|point| point.1).chain([0.0]);
