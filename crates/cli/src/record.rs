@@ -9,6 +9,7 @@ use std::sync::Arc;
 use teeter_record::{Record, STANDARD_GRAVITY};
 use teeter_report::{RecordSummary, Results, record_figures, record_page, spectrum_periods};
 use teeter_scenario::diagnostic::{Diagnostic, Diagnostics};
+use teeter_scenario::readable::{shortest, with_digits, with_unit};
 use teeter_scenario::record_alone;
 use teeter_scenario::scene::RecordScene;
 
@@ -110,30 +111,46 @@ impl<'a> Held<'a> {
                 .join(", "),
         ];
         let mut row = |name: &str, text: String| lines.push(format!("  {name:<22}{text}"));
-        row("values", format!("{}, every {} s, over {:.6} s", record.len(), record.dt(), record.duration()));
+        row(
+            "values",
+            format!(
+                "{}, every {}, over {}",
+                record.len(),
+                with_digits(record.dt(), "s", 9),
+                with_digits(record.duration(), "s", 9)
+            ),
+        );
         if !self.keys.is_empty() {
             row("corrections", self.corrections());
         }
-        let peak = format!("{:.5} m/s^2 = {:.7} gn at {:.4} s", a.size, a.size / STANDARD_GRAVITY, a.time);
+        // Digits enough to compare with those that come with the record.
+        let gravities = shortest(a.size / STANDARD_GRAVITY, 5);
+        let peak = format!("{} m/s^2 = {gravities} gn at {}", shortest(a.size, 5), with_digits(a.time, "s", 5));
         row("peak acceleration", peak);
-        row("peak velocity", format!("{:.6} m/s at {:.4} s", v.size, v.time));
-        row("peak displacement", format!("{:.6} m at {:.4} s", d.size, d.time));
+        row("peak velocity", format!("{} at {}", with_digits(v.size, "m/s", 5), with_digits(v.time, "s", 5)));
+        row("peak displacement", format!("{} at {}", with_digits(d.size, "m", 5), with_digits(d.time, "s", 5)));
         let arias = format!(
-            "{:.6} m/s, linear between values; {:.10} m/s by the plain sum",
-            numbers.arias_intensity,
-            record.arias_sum()
+            "{}, linear between values; {} by the plain sum",
+            with_digits(numbers.arias_intensity, "m/s", 5),
+            with_digits(record.arias_sum(), "m/s", 5)
         );
         row("Arias intensity", arias);
         match record.husid_times([0.05, 0.95]) {
-            Ok([from, to]) => row("5 % to 95 % of it", format!("{:.3} s, from {from:.3} s to {to:.3} s", to - from)),
+            Ok([from, to]) => {
+                let [long, from, to] = [to - from, from, to].map(|t| with_unit(t, "s"));
+                row("5 % to 95 % of it", format!("{long}, from {from} to {to}"));
+            }
             Err(why) => row("5 % to 95 % of it", why.to_string()),
         }
-        row("at the end", format!("velocity {velocity:.6} m/s, displacement {displacement:.6} m"));
+        row(
+            "at the end",
+            format!("velocity {}, displacement {}", with_unit(velocity, "m/s"), with_unit(displacement, "m")),
+        );
         if let Ok(responses) = record.spectrum(DAMPING_RATIO, &PRINTED_PERIODS) {
             row("spectrum, 5 % damping", "period T, pseudo-acceleration Sa, displacement Sd".to_owned());
             for of in responses {
-                let (sa, sd) = (of.pseudo_acceleration(), 1e3 * of.displacement);
-                row("", format!("{:>4} s {sa:>12.5} m/s^2 {sd:>12.4} mm", of.period));
+                let [sa, sd] = [of.pseudo_acceleration(), 1e3 * of.displacement].map(|x| shortest(x, 4));
+                row("", format!("{:>4} s {sa:>10} m/s^2 {sd:>10} mm", of.period));
             }
         }
         lines.join("\n") + "\n"

@@ -73,7 +73,7 @@ pub struct Equilibrium<const D: usize> {
 pub enum EquilibriumError {
     /// A contact leaves its place.
     #[error(
-        "a contact lifted by {lifted:e} m and slid by {slid:e} m by round {round}: there is no equilibrium where it was put"
+        "a contact lifted by {lifted:.2e} m and slid by {slid:.2e} m by round {round}: there is no equilibrium where it was put"
     )]
     Leaves {
         /// The contact that went farthest beyond its reach.

@@ -2,6 +2,11 @@
 
 use crate::{ContactError, FactorError, Mismatch, Model, State, StateError, StepReport, Workspace};
 
+/// A time for a message: sums of steps end in digits that say nothing.
+pub(crate) fn few_digits(t: f64) -> f64 {
+    format!("{t:.8e}").parse().unwrap_or(t)
+}
+
 /// Why a step can't be taken.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -10,7 +15,7 @@ pub enum StepError {
     #[error(transparent)]
     Factor(#[from] FactorError),
     /// The contact problem is not one, or not one that the scheme can pose.
-    #[error("at t = {t} s: {source}")]
+    #[error("at t = {} s: {source}", few_digits(*t))]
     Problem {
         /// Start of the step, s.
         t: f64,
@@ -36,7 +41,7 @@ pub enum StepError {
     #[error("the scheme ended a step without a phase: Workspace::phase comes before Workspace::finish")]
     NoPhase,
     /// A coordinate, a velocity or an energy is no longer finite.
-    #[error("the motion diverged in the step from t = {t} s")]
+    #[error("the motion diverged in the step from t = {} s", few_digits(*t))]
     Diverged {
         /// Start of the step, s.
         t: f64,
@@ -122,4 +127,15 @@ pub trait Scheme<const D: usize>: Send + Sync {
         until: f64,
         work: &'w mut Workspace<D>,
     ) -> Result<StepReport<'w, D>, StepError>;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_of_messages_have_few_digits() {
+        assert_eq!(StepError::Diverged { t: 0.1 + 0.2 }.to_string(), "the motion diverged in the step from t = 0.3 s");
+        assert_eq!((few_digits(1234.000_1), few_digits(f64::NAN).is_nan()), (1234.0001, true));
+    }
 }

@@ -151,7 +151,7 @@ pub enum StateError {
     #[error("the step size is {0} s, but must be positive and finite")]
     StepSize(f64),
     /// A time that is not finite, or more steps than can be counted.
-    #[error("the state is {t} s after {step} steps: there is no step after that")]
+    #[error("the state is {} s after {step} steps: there is no step after that", crate::scheme::few_digits(*t))]
     Time {
         /// Steps taken.
         step: u64,

@@ -84,9 +84,12 @@ impl Frame<'_> {
             places.windows(2).any(|pair| pair[1].0 - pair[0].0 < pair[0].1 + pair[1].1 + LEAST_SPACE)
         };
         let counts = (2..most).rev();
-        counts.map(|count| self.x.ticks(count)).fold(self.x.ticks(most), |chosen, fewer| {
-            if crowded(&chosen) { fewer } else { chosen }
-        })
+        counts.map(|count| self.x.ticks(count)).fold(
+            self.x.ticks(most),
+            |chosen, fewer| {
+                if crowded(&chosen) { fewer } else { chosen }
+            },
+        )
     }
 }
 

@@ -210,7 +210,10 @@ mod tests {
         assert_eq!(title(&small), format!("Energy &lt;E&gt; ({} J)", power("\u{2212}6")));
         assert_eq!(labels(&Ticks::linear(-2e-13, 4.2e-13, 3)), ["\u{2212}200", "0", "200", "400"]);
         let large = Ticks::linear(0.0, 6e5, 6);
-        assert_eq!((labels(&large).last(), title(&large)), (Some(&"600"), format!("Energy &lt;E&gt; ({} J)", power("3"))));
+        assert_eq!(
+            (labels(&large).last(), title(&large)),
+            (Some(&"600"), format!("Energy &lt;E&gt; ({} J)", power("3")))
+        );
         assert_eq!(large.reading.title("Share"), format!("Share ({})", power("3")).replace("\"4\">", "\"4\">\u{200b}"));
         assert_eq!(Ticks::linear(0.0, 5.0, 5).reading.title("Share of a (b) c"), "Share of a (b) c");
     }
@@ -222,9 +225,15 @@ mod tests {
         assert_eq!(ticks.reading.title("Position x (cm)"), "Position x \u{2212} 123450.00 (cm)");
         let ticks = Ticks::linear(-5.318_53e-1 - 4e-6, -5.318_53e-1 + 4e-6, 4);
         assert_eq!(labels(&ticks), ["\u{2212}6", "\u{2212}4", "\u{2212}2", "0"]);
-        assert!(ticks.reading.title("w (cm)").starts_with("w + 0.53185 (10<tspan"), "{}", ticks.reading.title("w (cm)"));
+        assert!(
+            ticks.reading.title("w (cm)").starts_with("w + 0.53185 (10<tspan"),
+            "{}",
+            ticks.reading.title("w (cm)")
+        );
         // What a label says and where it stands are the same value.
-        for (low, high) in [(3.082_687, 3.082_689), (1.170_05e-11, 1.170_06e-11), (29_999.9995, 30_000.0005), (-1e9, -1e9 + 0.1)] {
+        for (low, high) in
+            [(3.082_687, 3.082_689), (1.170_05e-11, 1.170_06e-11), (29_999.9995, 30_000.0005), (-1e9, -1e9 + 0.1)]
+        {
             let ticks = Ticks::linear(low, high, 5);
             let offset = ticks.reading.offset.clone().map_or(0.0, |(text, negative)| {
                 let text = text.replace("·10<tspan dy=\"-4\" font-size=\"8\">", "e").replace('\u{2212}', "-");
@@ -232,7 +241,8 @@ mod tests {
                 if negative { -value } else { value }
             });
             for (value, label) in &ticks.major {
-                let read = label.replace('\u{2212}', "-").parse::<f64>().unwrap() * 10f64.powi(ticks.reading.power) + offset;
+                let read =
+                    label.replace('\u{2212}', "-").parse::<f64>().unwrap() * 10f64.powi(ticks.reading.power) + offset;
                 assert!((read - value).abs() < 1e-3 * (high - low), "{value}: {label} {:?}", ticks.reading);
                 assert!(text_width(label) <= WIDEST, "{label}");
             }

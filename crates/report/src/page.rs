@@ -30,12 +30,12 @@ mod vtk;
 pub use accelerograms::{record_figures, record_page, spectrum_periods};
 pub use chain::{Joint, ThrustLine, thrust_lines};
 pub use figures::figures;
+pub(crate) use figures::is_pair_figure;
 pub use html::{STYLE, document, render};
 pub(crate) use recorder::Kept;
 pub use recorder::PageRecorder;
 pub use rocking::{HalfCycle, half_cycles};
 pub use teeter_plot::escaped;
-pub(crate) use figures::is_pair_figure;
 pub(crate) use vtk::is_vtk_picture;
 pub use vtk::{VTK_SERIES, VtkRecorder};
 

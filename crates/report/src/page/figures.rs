@@ -244,7 +244,8 @@ impl Plots<'_> {
                 let label = &drawn.label;
                 let step = |y: &[f64], label: &str| {
                     let end = borders.last().copied().unwrap_or_default();
-                    Series::staircase(label, borders.iter().copied().zip(y.iter().map(|y| factor * y)), end).number(point)
+                    Series::staircase(label, borders.iter().copied().zip(y.iter().map(|y| factor * y)), end)
+                        .number(point)
                 };
                 let mean = means::normal(&self.panels.curves, forces, window);
                 // The raw values stay behind their mean, which then has the name.
@@ -253,7 +254,9 @@ impl Plots<'_> {
                 } else {
                     step(&forces.normal, label)
                 });
-                let scaled = |mean: Vec<f64>| borders.iter().copied().zip(mean.into_iter().map(|y| factor * y)).collect::<Vec<_>>();
+                let scaled = |mean: Vec<f64>| {
+                    borders.iter().copied().zip(mean.into_iter().map(|y| factor * y)).collect::<Vec<_>>()
+                };
                 means.extend(mean.map(|mean| Series::line(label, scaled(mean)).number(point)));
                 tangential.push(step(&forces.tangential, label));
                 bands.push(Band::new(label, stretches(&borders, &forces.state)));
@@ -300,7 +303,9 @@ fn pair_file(file: &str, block: &str, surface: &str) -> String {
 /// Whether a file of that name is the figure of one of many pairs, as `contact_forces` or `slip`.
 pub(crate) fn is_pair_figure(file: &str, name: &str) -> bool {
     let pair = name.strip_prefix(file).and_then(|rest| rest.strip_prefix('-')?.strip_suffix(".svg"));
-    pair.is_some_and(|pair| pair.split_once("-on-").is_some_and(|(block, surface)| !block.is_empty() && !surface.is_empty()))
+    pair.is_some_and(|pair| {
+        pair.split_once("-on-").is_some_and(|(block, surface)| !block.is_empty() && !surface.is_empty())
+    })
 }
 
 /// Numbers in a unit of a length axis to a metre.

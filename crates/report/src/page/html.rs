@@ -235,9 +235,7 @@ fn numbers(values: &Numbers) -> String {
         // For people; the file, and `data-value`, have all digits.
         let shown = match (text.parse::<f64>(), unit_of(&path)) {
             (Ok(x), Some(unit)) => with_digits(x, unit, 6).replace('-', "\u{2212}"),
-            (Ok(x), None) if text.contains(['.', 'e']) && path != "version" => {
-                shortest(x, 3).replace('-', "\u{2212}")
-            }
+            (Ok(x), None) if text.contains(['.', 'e']) && path != "version" => shortest(x, 3).replace('-', "\u{2212}"),
             _ => with_code(&text),
         };
         let text = escaped(&text);
@@ -527,7 +525,9 @@ fn scientific(x: f64) -> String {
     let text = format!("{x:.1e}");
     match text.split_once('e') {
         Some((digits, "0")) => digits.replace('-', "\u{2212}"),
-        Some((digits, power)) => format!("{} × 10<sup>{}</sup>", digits.replace('-', "\u{2212}"), power.replace('-', "\u{2212}")),
+        Some((digits, power)) => {
+            format!("{} × 10<sup>{}</sup>", digits.replace('-', "\u{2212}"), power.replace('-', "\u{2212}"))
+        }
         None => text,
     }
 }

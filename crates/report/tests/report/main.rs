@@ -11,5 +11,6 @@ mod palette;
 mod plots;
 mod records;
 mod sections;
+mod sizes;
 mod swings;
 mod table;

@@ -1,0 +1,118 @@
+//! Pages and figures of scenes of any size: units, ticks and digits that suit, names that fit, figures that fit a page.
+
+use crate::page::{data, numbers, panel, run, scenario};
+use teeter_report::figures;
+
+/// A block on ground, of a width and a height, with one line for the time and one for its place.
+fn block(time: &str, size: [&str; 2], place: &str) -> String {
+    let [width, height] = size;
+    format!(
+        "[time]\n{time}\n[ground]\n[material.m]\ndensity = '2500 kg/m^3'\n[block.chip]\nmaterial = 'm'\nwidth = '{width}'\n\
+         height = '{height}'\ndepth = '{width}'\n{place}\n[contact.feet]\nbetween = ['chip', 'ground']\nfriction = 0.5\n"
+    )
+}
+
+fn figure(of: &[(String, String)], name: &str) -> String {
+    of.iter().find(|(file, _)| file == name).unwrap_or_else(|| panic!("no {name}")).1.clone()
+}
+
+#[test]
+fn a_chip_of_a_micrometre_has_axes_that_one_can_read() {
+    let text = block("end = '3 ms'\nstep = '1 us'", ["1 um", "4 um"], "on = 'ground'\nat = '0 um'\ntilt = '8 deg'");
+    let run = run("micrometre", &text);
+    let page = data(&run.html);
+    let unit = |id: &str| panel(&page, id).unwrap()["unit"].as_str().unwrap().to_owned();
+    assert_eq!(["x", "y", "energy"].map(unit), ["nm", "µm", "zJ"]);
+    assert_eq!((&page["forces"]["prefix"], &page["forces"]["factor"]), (&"p".into(), &1e12.into()));
+    let figures = figures(&run.page);
+    let forces = figure(&figures, "contact_forces.svg");
+    for wanted in ["Normal force (pN)", "Time t (ms)", "peaks cut, up to 2."] {
+        assert!(forces.contains(wanted), "{wanted}");
+    }
+    for (name, svg) in &figures {
+        assert!(!svg.contains("0.0030<") && !svg.contains("e\u{2212}"), "{name} has a label that is none");
+    }
+    // What the model leaves out, and why: with energies that one can read.
+    assert!(
+        run.html.contains("the total energy is 2.0") && run.html.contains("e-19 J, and 2.0"),
+        "energies of 1e-19 J"
+    );
+    assert!(run.html.contains("· t = 3 ms ·"));
+}
+
+#[test]
+fn a_creeping_block_far_from_the_origin_is_seen_to_creep() {
+    let text = "[time]\nend = '10 s'\nstep = '1 ms'\n[material.m]\ndensity = '2500 kg/m^3'\n[world]\ngravity = '0 m/s^2'\n[block.probe]\n\
+        material = 'm'\nwidth = '20 cm'\nheight = '10 cm'\ndepth = '5 cm'\nposition = ['1234.5 m', '5 cm']\nvelocity = ['3e-6 m/s', '0 m/s']\n";
+    let run = run("creeping", text);
+    let page = data(&run.html);
+    let x = panel(&page, "x").unwrap();
+    assert_eq!(x["unit"], "m", "numbers of cm would be too large");
+    let values = numbers(&x["series"][0]["y"]);
+    let [first, middle, last] = [0, values.len() / 2, values.len() - 1].map(|k| values[k] - 1234.5);
+    assert!(
+        first.abs() < 1e-7 && (middle - 15e-6).abs() < 1e-6 && (last - 30e-6).abs() < 1e-6,
+        "{first} {middle} {last}"
+    );
+    let svg = figure(&figures(&run.page), "x.svg");
+    assert!(
+        svg.contains("Position x \u{2212} 1234.5000 (10<tspan"),
+        "the digits that all values share are in the title"
+    );
+    assert!(svg.contains(">30</text>"), "micrometres");
+}
+
+#[test]
+fn rounding_is_no_loss_of_energy() {
+    let text =
+        std::fs::read_to_string(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/incline.toml"));
+    let html = &run("still", &text.unwrap()).html;
+    let tile = &html[html.find("data-summary=\"energy.lost\"").unwrap()..];
+    let shown = &tile[tile.find('>').unwrap() + 1..tile.find("</dd>").unwrap()];
+    assert_eq!(shown, "0 J");
+    let drop = &scenario("drop").html;
+    let tile = &drop[drop.find("data-summary=\"energy.lost\"").unwrap()..];
+    assert!(tile[..tile.find("</dd>").unwrap()].ends_with("mJ") || tile[..tile.find("</dd>").unwrap()].ends_with(" J"));
+    assert!(!tile[..tile.find("</dd>").unwrap()].ends_with(">0 J"), "what is lost is told");
+}
+
+/// Height of a figure, mm.
+fn height(svg: &str) -> f64 {
+    let rest = &svg[svg.find("height=\"").unwrap() + 8..];
+    rest[..rest.find("mm").unwrap()].parse().unwrap()
+}
+
+#[test]
+fn each_of_many_pairs_has_a_figure_that_fits_a_page() {
+    let text = "[time]\nend = '20 ms'\nstep = '1 ms'\n[ground]\n[material.m]\ndensity = '2500 kg/m^3'\n[block.box]\nmaterial = 'm'\nwidth = '10 cm'\n\
+        height = '10 cm'\ndepth = '10 cm'\non = 'ground'\nat = '0 cm'\nrepeat = { count = COUNT, stacked = true }\n[contact.floor]\n\
+        between = ['*', 'ground']\nfriction = 0.5\n[contact.joints]\nbetween = ['*', '*']\nfriction = 0.5\n";
+    let names = |count: &str| {
+        let run = run(&format!("pairs-{count}"), &text.replace("COUNT", count));
+        let figures = figures(&run.page);
+        let own: Vec<_> = figures.into_iter().filter(|(name, _)| name.starts_with("contact_forces")).collect();
+        assert!(own.iter().all(|(_, svg)| height(svg) < 240.0), "A4 has 297 mm");
+        own.into_iter().map(|(name, _)| name).collect::<Vec<_>>()
+    };
+    assert_eq!(names("2"), ["contact_forces.svg"]);
+    let of_four = names("4");
+    assert_eq!(of_four.len(), 4);
+    assert!(of_four.contains(&"contact_forces-box-1-on-ground.svg".to_owned()), "{of_four:?}");
+}
+
+#[test]
+fn half_cycles_name_their_block_and_tell_housner_only_of_one_that_stands_alone() {
+    let table = |html: &str| {
+        let start = html.find("<section id=\"rocking\"")?;
+        let section = &html[start..start + html[start..].find("</section>").unwrap()];
+        Some(section.to_owned())
+    };
+    let text = std::fs::read_to_string(
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/column-of-drums.toml"),
+    );
+    let drums = table(&run("drums", &text.unwrap()).html).unwrap();
+    assert!(drums.contains(">Block</th>") && drums.contains("<th scope=\"row\">drum-1</th>"), "{drums}");
+    assert!(!drums.contains("0.0400") && !drums.contains("\u{2212}0.0000"), "{drums}");
+    let alone = table(&scenario("free-rocking-on-ground").html).unwrap();
+    assert!(!alone.contains(">Block</th>") && alone.contains("<td>0.9294</td>"), "{alone}");
+}
