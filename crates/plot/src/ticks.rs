@@ -232,7 +232,7 @@ mod tests {
         );
         // What a label says and where it stands are the same value.
         for (low, high) in
-            [(3.082_687, 3.082_689), (1.170_05e-11, 1.170_06e-11), (29_999.9995, 30_000.0005), (-1e9, -1e9 + 0.1)]
+            [(3.082_687, 3.082_689), (1.170_05e-11, 1.170_06e-11), (29_999.999_5, 30_000.000_5), (-1e9, -1e9 + 0.1)]
         {
             let ticks = Ticks::linear(low, high, 5);
             let offset = ticks.reading.offset.clone().map_or(0.0, |(text, negative)| {

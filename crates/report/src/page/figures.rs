@@ -271,7 +271,8 @@ impl Plots<'_> {
                     continue;
                 }
                 let (range, cut) = cut(&lines, least, &unit);
-                let name = (scenery.contacts.len() > 1).then(|| contact.name.clone());
+                let name = (scenery.contacts.len() > 1)
+                    .then(|| format!("{} on {}", scenery.blocks[contact.block].name, contact.surface));
                 let meant = (what == "Normal" && !means.is_empty())
                     .then(|| format!("pale: raw; mean over {}", with_digits(window, "s", 3)));
                 let note = [name, meant, cut].into_iter().flatten().collect::<Vec<_>>().join("; ");
