@@ -185,3 +185,40 @@ fn the_first_touch_of_a_step_is_the_event_though_another_corner_is_inside_at_its
         }
     }
 }
+
+/// Its underside is flat up to where the edge of the other begins to round: there J̇v jumps.
+#[test]
+fn a_block_slides_over_a_rounded_edge_and_off_it() {
+    let scene = "[time]\nend = '0.45 s'\nstep = '1 ms'\n[contact.c]\nbetween = ['*', '*']\nfriction = 0.2\nrestitution = 0.0\n\
+         [block.table]\nfixed = true\ndensity = '1000 kg/m^3'\ndepth = '10 cm'\nwidth = '40 cm'\nheight = '10 cm'\n\
+         rounding = '3 mm'\nposition = ['0 m', '0 m']\n\
+         [block.b]\ndensity = '1000 kg/m^3'\ndepth = '10 cm'\nwidth = '20 cm'\nheight = '6 cm'\nrounding = '2 mm'\n\
+         position = ['5 cm', '8 cm']\nvelocity = ['1.5 m/s', '0 m/s']\n";
+    let short = run(scene, "100 us").state;
+    assert!(short.q[5].abs() > 0.3, "it tips: {:?}", short.q);
+    for step in ["1 ms", "10 ms"] {
+        let state = run(scene, step).state;
+        for (q, other) in state.q.iter().zip(&short.q) {
+            assert!((q - other).abs() < 1e-8, "{step}: {:?} and {:?}", state.q, short.q);
+        }
+    }
+}
+
+/// A wheel of twelve sides meets the last point of a profile, on which it turns: what lies past it is not there to take
+/// differences over.
+#[test]
+fn a_block_turns_on_the_last_point_of_a_profile() {
+    let scene = "[time]\nend = '0.1 s'\nstep = '1 ms'\n\
+         [ground]\nprofile = { points = [['-60 cm', '0 cm'], ['-20 cm', '25 cm']] }\n\
+         [contact.c]\nbetween = ['*', '*']\nfriction = 1.0\nrestitution = 0.0\n\
+         [block.b]\ndensity = '1000 kg/m^3'\ndepth = '10 cm'\nshape = { kind = 'regular', sides = 12, radius = '5 cm' }\n\
+         position = ['-19.7 cm', '30.2 cm']\nangle = '-2 deg'\nvelocity = ['-1 m/s', '-0.3 m/s']\nspin = '20 rad/s'\n";
+    let short = run(scene, "100 us").state;
+    assert!((short.v[2] - 20.0).abs() > 0.01, "it meets the point: {:?}", short.v);
+    for step in ["1 ms", "10 ms"] {
+        let state = run(scene, step).state;
+        for (v, other) in state.v.iter().zip(&short.v) {
+            assert!((v - other).abs() < 1e-8, "{step}: {:?} and {:?}", state.v, short.v);
+        }
+    }
+}
