@@ -155,6 +155,8 @@ fn placement(error: &PlacementError, document: &Document) -> Diagnostic {
             match motion {
                 InstabilityMode::Slides => "increase the friction, place the block where the beam stays level, or start undeformed",
                 InstabilityMode::Tips => "move the block, use a stiffer beam, or start undeformed",
+                InstabilityMode::Rolls => "place it where the beam stays level, hold it between other blocks, or start undeformed",
+                InstabilityMode::FallsOver => "turn it so that it stands on a side, or start undeformed",
                 InstabilityMode::ChangesFoot => "tilt it more, or the other way, use a stiffer beam, or start undeformed",
                 InstabilityMode::LiftsOff => "check gravity and forces at t = 0, or start undeformed",
             },
