@@ -67,6 +67,11 @@ impl BuildError {
                 };
                 document.error(&place_of(block, document), rule, remedy)
             }
+            Self::CrestInside { block, crest } => document.error(
+                &place_of(block, document),
+                format!("the ground's crest-{crest}, point {crest} of its profile, starts inside the block"),
+                "move the block, or the point",
+            ),
             Self::Overlap { first, second, depth } => document.error(
                 &place_of(second, document),
                 format!("`{second}` overlaps `{first}` by {} at the start", with_digits(*depth, "m", 2)),

@@ -235,7 +235,7 @@ fn without_effect(force: &ForceScene, scene: &Scene, document: &Document) -> Opt
         return None;
     }
     let table = table_of(document, &block.name);
-    let (why, remedy) = if document.has(&format!("block.{table}.fixed")) {
+    let (why, remedy) = if document.flag(&format!("block.{table}.fixed")) == Some(true) {
         ("is fixed", "put it on a block that can move, or leave out `fixed`")
     } else {
         (
@@ -467,7 +467,7 @@ mod tests {
     fn a_block_in_the_air_may_have_any_angle() {
         let free = |contact: &str| {
             let text = SCENE
-                .replace("on = 'b'\nat = '50 cm'", "position = ['0.5 m', '2 m']\nangle = '80 deg'")
+                .replace("on = 'b'\nat = '50 cm'", "position = ['0.5 m', '2 m']\nangle = '40 deg'")
                 .replace("[contact.c]\nbetween = ['k', 'b']\nfriction = 0.5\n", contact);
             crate::load(text.as_bytes(), "f", "f", &[]).unwrap().warnings.len()
         };
