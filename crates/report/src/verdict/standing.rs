@@ -110,7 +110,9 @@ impl Seen {
             return;
         }
         let within = |stance: &Stance| stance.right.top < angle && angle < stance.left.top;
-        let stance = match self.stance.0 {
+        // After a pause only the angle is known, from which it was found.
+        let known = self.stance.0.or_else(|| self.settling.map(|(_, at)| outline.stance(at)));
+        let stance = match known {
             Some(None) => return,
             Some(Some(stance)) if within(&stance) => stance,
             _ => {
@@ -125,7 +127,13 @@ impl Seen {
             self.settling = None;
             return;
         }
-        let (since, at) = *self.settling.get_or_insert((state.t, angle));
+        let (since, at) = match self.settling {
+            Some(known) => known,
+            None => {
+                self.stance = KnownStance(Some(outline.stance(angle)));
+                *self.settling.insert((state.t, angle))
+            }
+        };
         if state.t - since >= SETTLED * watched.still_time {
             // Found anew from this angle, as it will be after a pause.
             (self.began, self.settling, self.stance) = (Some(at), None, KnownStance(None));
