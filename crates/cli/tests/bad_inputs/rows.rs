@@ -93,6 +93,15 @@ friction = 0.5
 const RAIL_0: &str = "at = \"0 cm\"\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], angular_velocity = \"0 rad/s\" }";
 const RAIL_1: &str = "at = \"1 cm\"\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], angular_velocity = \"0 rad/s\" }";
 
+/// The lower block of the stack, held or led, and a push to the right on it.
+const LOWER: &str = "on = \"ground\"\nat = \"0 cm\"";
+const HELD: &str = "position = [\"0 cm\", \"5 cm\"]\nfixed = true";
+const LED: &str =
+    "position = [\"0 cm\", \"5 cm\"]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], angular_velocity = \"0 rad/s\" }";
+const SPIKE: &str =
+    "[ground]\nprofile = { points = [[\"-1 cm\", \"0 cm\"], [\"0 cm\", \"9 cm\"], [\"1 cm\", \"0 cm\"]] }";
+const PUSH: &str = "[force.push]\non = \"lower\"\nforce = [\"5 N\", \"0 N\"]\n[contact.joint]";
+
 /// Stones in rows, of which any two can touch.
 pub(crate) const PILE: &str = "\
 [time]
@@ -347,6 +356,10 @@ fn beams() -> Vec<Row> {
         refused(8, "stop misspelt", Set(&["time.stop=['overturn']"]), &["time.stop", "overturned", "rest", "sunk"]),
         refused(8, "stop without brackets", Set(&["time.stop=overturned"]), &["time.stop", "array"]),
         refused(8, "stop twice", Set(&["time.stop=['rest', 'rest']"]), &["time.stop"]),
+        warned(54, "force on a fixed block", Stack(&[(LOWER, HELD), ("\"lower\", \"ground\"", "\"upper\", \"ground\""), ("[contact.joint]", PUSH)]), &["warning: force.push.on = \"lower\"", "no effect", "fixed"]),
+        warned(54, "force along a prescribed axis", Stack(&[(LOWER, LED), ("\"lower\", \"ground\"", "\"upper\", \"ground\""), ("[contact.joint]", PUSH)]), &["warning: force.push.on = \"lower\"", "no effect", "prescribed"]),
+        refused(54, "crest deep inside a block", Stack(&[("[ground]", SPIKE), (LOWER, "position = [\"0 cm\", \"5 cm\"]")]), &["block.lower.position", "crest-2", "inside the block"]),
+        refused(54, "disc on a sloping beam in equilibrium", Edit(&[("width    = \"3 cm\"\nheight   = \"13.5 cm\"", "radius = \"3 cm\""), (PLACE, "on = \"table\"\nat = \"9 cm\"")]), &["block.rocker.at", "the block rolls", "level"]),
         warned(38, "thick beam without shear", Set(&["beam.table.thickness=4 cm"]), &["warning: beam.table.theory", "0.11 of the span", "timoshenko"]),
     ]
 }
