@@ -13,6 +13,9 @@ const ALONG: f64 = 1e-3;
 /// the differences are.
 const SMOOTH: f64 = 1e-6;
 
+/// A velocity is known to this part of what it consists of.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// The samples' steps, and their shares in a derivative of order 4 and in one of order 2.
 type Stencil = [(f64, f64, f64)];
 const CENTRAL: [(f64, f64, f64); 4] =
@@ -68,8 +71,8 @@ impl Smooth {
         if fastest == 0.0 {
             return Ok(Vector::zeros());
         }
-        let enough = SMOOTH * fastest * self.stage.speed(row, &self.v);
         let h = (ALONG / fastest).min(1e6);
+        let enough = self.stage.speed(row, &self.v) * (SMOOTH * fastest).max(ROUNDING / h);
         let (mut best, mut least) = (Vector::zeros(), f64::INFINITY);
         for (stencil, part) in TRIALS {
             if let Some((derivative, error)) = self.difference(model, q, work, candidate.id, stencil, part * h)?
