@@ -1,7 +1,7 @@
 //! The difference between a measured motion and that of a scene with trial values.
 
 use super::FitKey;
-use crate::compare::{MotionTrace, Tracer, golden, mismatch_and_shift};
+use crate::compare::{FINE, MotionTrace, Tracer, golden, mismatch_and_shift};
 use crate::measured::{Channel, MeasuredMotion, Sign, local_fit};
 use crate::{Failure, Setting, StudyScene};
 use std::sync::Arc;
@@ -106,7 +106,7 @@ impl<'a> Objective<'a> {
             Some(shift) => shift,
             None => {
                 let reach = 1.5 * self.motion.interval();
-                golden(near - reach, near + reach, |shift| self.residuals(&trace, shift, near).2)
+                golden(near - reach, near + reach, FINE, |shift| self.residuals(&trace, shift, near).2)
             }
         };
         let (residuals, offset, cost) = self.residuals(&trace, shift, near);
