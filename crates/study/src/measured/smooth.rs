@@ -11,7 +11,8 @@ pub struct LocalFit {
     /// Their rates, per second.
     pub rate: Vec<f64>,
     /// Standard deviation of the samples about their parabolas, corrected for the three unknowns:
-    /// their noise, if the motion is smooth over a window. 0 if a window has three rows.
+    /// their noise, if the motion is smooth over a window; without the windows in which all values are
+    /// equal. 0 if a window has three rows.
     pub noise: f64,
 }
 
@@ -36,7 +37,10 @@ pub fn local_fit(t: &[f64], y: &[f64], window: usize) -> LocalFit {
             let s = t[*row] - t[k];
             y[*row] - (a + s * (b + s * c))
         };
-        if window > LEAST_WINDOW {
+        // Where no value differs from the next, the motion is at rest and its noise below the rounding of
+        // the table: that says nothing of the noise elsewhere.
+        let rests = rows.iter().all(|&row| y[row] == y[rows[0]]);
+        if window > LEAST_WINDOW && !rests {
             let sum: f64 = rows.iter().map(|row| off(row).powi(2)).sum();
             squares.push(sum / (window - LEAST_WINDOW) as f64);
         }
