@@ -14,6 +14,8 @@ pub struct LocalFit {
     /// their noise, if the motion is smooth over a window; without the windows in which all values are
     /// equal. 0 if a window has three rows.
     pub noise: f64,
+    /// The rows of the window; 1 if nothing was smoothed.
+    pub window: usize,
 }
 
 /// Fits a parabola by least squares through `window` samples around each sample (Savitzky and Golay
@@ -23,7 +25,7 @@ pub struct LocalFit {
 pub fn local_fit(t: &[f64], y: &[f64], window: usize) -> LocalFit {
     let present: Vec<usize> = (0..t.len()).filter(|&k| y[k].is_finite()).collect();
     let window = window.max(LEAST_WINDOW).min(present.len());
-    let mut fit = LocalFit { value: vec![f64::NAN; t.len()], rate: vec![f64::NAN; t.len()], noise: 0.0 };
+    let mut fit = LocalFit { value: vec![f64::NAN; t.len()], rate: vec![f64::NAN; t.len()], noise: 0.0, window };
     if window < LEAST_WINDOW {
         return fit;
     }
