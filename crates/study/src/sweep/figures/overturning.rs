@@ -92,18 +92,19 @@ impl Spread {
         };
         let positive = sorted.len() > 2 && sorted.first().is_some_and(|least| *least > 0.0);
         let logarithmic = positive && unevenness(f64::ln) < (1.0 - 1e-6) * unevenness(|x| x);
-        let (to, back): (fn(f64) -> f64, fn(f64) -> f64) =
-            if logarithmic { (f64::ln, f64::exp) } else { (|x| x, |x| x) };
+        let to = |x: f64| if logarithmic { x.ln() } else { x };
         let middles: Vec<f64> = sorted.windows(2).map(|pair| 0.5 * (to(pair[0]) + to(pair[1]))).collect();
         // The first and the last cell reach as far outwards as inwards; a single one is 1 wide.
         let mirrored = |end: Option<&f64>, middle: Option<&f64>, alone: f64| {
-            let end = end.copied().map_or(0.0, to);
+            let end = end.map_or(0.0, |end| to(*end));
             middle.map_or(end + alone, |middle| 2.0 * end - middle)
         };
         let mut edges = vec![mirrored(sorted.first(), middles.first(), -0.5)];
         edges.extend(&middles);
         edges.push(mirrored(sorted.last(), middles.last(), 0.5));
-        edges.iter_mut().for_each(|edge| *edge = back(*edge));
+        if logarithmic {
+            edges.iter_mut().for_each(|edge| *edge = edge.exp());
+        }
         Self { values: sorted, edges, logarithmic }
     }
 
