@@ -279,7 +279,7 @@ fn histories() -> Vec<Row> {
         refused(45, "record whose times go back", Record(Some("t,a\n0,0\n0.2,1\n0.1,1\n0.5,0\n")), &["signal.quake.file", "line 4", "0.1 s is not later than 0.2 s"]),
         refused(45, "record with one row", Record(Some("0,1\n")), &["signal.quake.file", "1 row of numbers", "two or more"]),
         refused(45, "record with a word", Record(Some("0,1\n1,high\n")), &["line 2", "`high` is not a number"]),
-        refused(45, "record by semicolons", Record(Some("t;a\n0;1\n1;2\n")), &["line 2", "1 column", "separated by a comma"]),
+        refused(45, "record by commas and semicolons", Record(Some("t,a\n0,1\n1;2\n")), &["line 3", "1 column", "separated by a semicolon"]),
         warned(46, "record shorter than the run", Record(Some("0,0\n0.1,2\n")), &["warning: signal.quake.file", "ends at 0.1 s", "the run at 0.5 s", "last value, 2, is kept"]),
         refused(38, "signal that is not defined", Edit(&[("[contact.feet]", "[ground]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], signal = \"quake\" }\n[contact.feet]")]), &["ground.motion.signal = \"quake\"", "not defined", "[signal.quake]"]),
         refused(38, "two motions in one", Edit(&[("[contact.feet]", "[ground]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], displacement = [\"1 m\", \"0 m\"] }\n[contact.feet]")]), &["ground.motion", "prescribe the same motion"]),
