@@ -144,9 +144,11 @@ fn block(block: &BlockPreview) -> String {
         Some(on) => format!("on {on}, tilted by {} deg", degrees(block.angle)),
         None => format!("placed by its mass centre, at {} deg", degrees(block.angle)),
     };
+    let from =
+        if block.flat == 0.0 { String::new() } else { format!(" from lying flat at {} deg", degrees(block.flat)) };
     let overturns = block
         .critical_angle
-        .map_or_else(String::new, |angle| format!("; overturns beyond {} deg (critical angle)", degrees(angle)));
+        .map_or_else(String::new, |angle| format!("; overturns beyond {} deg{from} (critical angle)", degrees(angle)));
     format!("block {}: {} kg, {place}{overturns}", block.name, digits(block.mass))
 }
 

@@ -5,6 +5,7 @@ use crate::run::Exit;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use teeter_report::{ResultsError, write_whole};
 use teeter_scenario::suggest::nearest;
 
 /// The scenes by name. Each stands on its own: none names another file.
@@ -77,7 +78,15 @@ pub(crate) fn new(options: &Options) -> Exit {
 
 /// Writes a file; one that exists stays unless it may be replaced.
 fn write(path: &Path, text: &str, force: bool) -> std::io::Result<()> {
-    let mut file = if force { File::create(path)? } else { File::create_new(path)? };
+    // A link is there, too, wherever it leads.
+    if force && std::fs::symlink_metadata(path).is_ok() {
+        // Whole or not at all: a full disk must not take the scene that was there.
+        return write_whole(path, text.as_bytes()).map_err(|error| match error {
+            ResultsError::Io { source, .. } => source,
+            error => std::io::Error::other(error),
+        });
+    }
+    let mut file = File::create_new(path)?;
     file.write_all(text.as_bytes())?;
     file.sync_all()
 }

@@ -90,10 +90,14 @@ impl<'a> Presenter<'a> {
     /// The line of a finding, and its position in it.
     fn excerpt(&self, found: &Diagnostic) -> Option<Excerpt> {
         if let Some(set) = &found.set {
-            let line = format!("--set {set}");
+            let line = format!("{} {set}", found.option);
             // In a setting either the value or the key is wrong.
             let equals = line.find('=').unwrap_or(line.len());
-            let span = if found.written.is_some() { (equals + 1).min(line.len())..line.len() } else { 6..equals };
+            let span = if found.written.is_some() {
+                (equals + 1).min(line.len())..line.len()
+            } else {
+                found.option.len() + 1..equals
+            };
             return Some(Excerpt::new(&line, span));
         }
         let span = found.span.clone()?;

@@ -12,8 +12,8 @@ use teeter_report::Results;
 use teeter_run::SceneSource;
 use teeter_scenario::diagnostic::Diagnostics;
 use teeter_study::sweep::{
-    Ensemble, FIGURE_FILES, FILES, IDENTITY, Journal, JournalError, RESULTS, Shard, Sweep, SweepIdentity, ended_study,
-    matching_files, merge, run_cases, study_figures, study_page, write_parquet, write_results,
+    Ensemble, FIGURE_FILES, FILES, IDENTITY, Journal, JournalError, RESULTS, Shard, Sweep, SweepIdentity, Tally,
+    ended_study, matching_files, merge, run_cases, study_figures, study_page, write_parquet, write_results,
 };
 use teeter_study::{StudyScene, runner};
 
@@ -162,14 +162,9 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
         console.note(&format!("{before} of {total} cases are done"));
     }
     let bar = CaseBar::new(console, before, total);
-    let (mut incomplete, mut unsolved, mut windows, mut failure) = (0_u64, 0_u64, 0_u64, None);
-    let mut empty = vec![true; study.sweep.outputs().len()];
+    let mut failure = None;
     let threads = jobs.unwrap_or_else(runner::cores);
     run_cases(&study.sweep, &study.source, missing, threads, cancel, |row| {
-        incomplete += u64::from(!row.status.is_complete());
-        unsolved += u64::from(row.unsolved_steps > 0);
-        windows += u64::from(row.changes() > 1);
-        empty.iter_mut().zip(&row.outputs).for_each(|(empty, cell)| *empty &= cell.is_empty());
         if let Err(error) = journal.add(row.number, &row.line(&study.sweep)) {
             failure = Some(error);
             return ControlFlow::Break(());
@@ -186,32 +181,43 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
         console.note(&format!("interrupted: {} of {total} cases are done; continue with --resume", journal.done()));
         return Exit::Interrupted;
     }
-    let written = write_results(results, &study.sweep).and_then(|()| write_parquet(results, &study.sweep));
-    if let Err(error) = written {
-        console.error(&format!("error: {error}"));
-        return Exit::Failed;
-    }
-    if incomplete > 0 {
-        let have = if incomplete == 1 { "case has" } else { "cases have" };
-        console.note(&format!("{incomplete} {have} no result: see the columns `status` and `error`"));
-    }
-    if unsolved > 0 {
-        let have = if unsolved == 1 { "case has" } else { "cases have" };
-        console.note(&format!("{unsolved} {have} steps that were not solved to tolerance: see `unsolved_steps`"));
-    }
-    if windows > 0 {
-        let text =
-            format!("in {windows} of {total} cases there are several limits: the lowest one seen is in the table");
-        console.note(&format!("{text}, their number in `find.changes`"));
-    } else if study.sweep.bisects_blindly() && total > incomplete {
-        console.note("a bisection sees one limit of several: `scan` under [find] also runs values in between");
-    }
-    let ran = journal.done() - before > incomplete;
-    for (output, _) in study.sweep.outputs().iter().zip(&empty).filter(|(_, empty)| **empty && ran) {
-        console.note(&format!("warning: `{}` is empty in all cases: {}", output.name(), why_empty(output)));
+    // Of all rows, those of sessions before this one as well.
+    let written = write_results(results, &study.sweep)
+        .and_then(|()| write_parquet(results, &study.sweep))
+        .and_then(|()| Tally::of(results.folder(), &study.sweep));
+    match written {
+        Ok(tally) => notes(console, &study.sweep, &tally),
+        Err(error) => {
+            console.error(&format!("error: {error}"));
+            return Exit::Failed;
+        }
     }
     console.note(&format!("{total} cases in {}", results.folder().join(RESULTS).display()));
     Exit::FinishedRun
+}
+
+/// What the user should know of the rows.
+fn notes(console: Console, sweep: &Sweep, tally: &Tally) {
+    let Tally { cases, incomplete, unsolved, several_limits, empty, .. } = tally;
+    let have = |count: u64| if count == 1 { "case has" } else { "cases have" };
+    if *incomplete > 0 {
+        console.note(&format!("{incomplete} {} no result: see the columns `status` and `error`", have(*incomplete)));
+    }
+    if *unsolved > 0 {
+        let text = "steps that were not solved to tolerance: see `unsolved_steps`";
+        console.note(&format!("{unsolved} {} {text}", have(*unsolved)));
+    }
+    if *several_limits > 0 {
+        let text = "there are several limits: the lowest one seen is in the table, their number in `find.changes`";
+        console.note(&format!("in {several_limits} of {cases} cases {text}"));
+    } else if sweep.bisects_blindly() && cases > incomplete {
+        console.note("a bisection sees one limit of several: `scan` under [find] also runs values in between");
+    }
+    for output in
+        sweep.outputs().iter().filter(|output| cases > incomplete && empty.iter().any(|name| name == output.name()))
+    {
+        console.note(&format!("warning: `{}` is empty in all cases: {}", output.name(), why_empty(output)));
+    }
 }
 
 fn why_empty(output: &teeter_study::sweep::Output) -> String {

@@ -21,7 +21,8 @@ pub(crate) fn watch(mut options: Options) -> Exit {
     let stopped = interrupt::listen();
     loop {
         // What changes during the run counts as a change.
-        let before = Stamps::of(&options);
+        let mut files = run::inputs(&options);
+        let before = Stamps::of(&files);
         let exit = run::run(&options);
         if stopped.load(Ordering::Relaxed) {
             return Exit::Interrupted;
@@ -34,11 +35,16 @@ pub(crate) fn watch(mut options: Options) -> Exit {
             _ => {}
         }
         console.note(&format!("watching {} for changes; Ctrl-C ends", options.scene.display()));
-        while Stamps::of(&options) == before {
+        while Stamps::of(&files) == before {
             if stopped.load(Ordering::Relaxed) {
                 return Exit::Interrupted;
             }
             std::thread::sleep(EVERY);
+            // Which files a scene names changes with the scene alone, but one that can't be read may lack
+            // a file that comes.
+            if exit == Exit::BadInput {
+                files = run::inputs(&options);
+            }
         }
     }
 }
@@ -48,11 +54,11 @@ pub(crate) fn watch(mut options: Options) -> Exit {
 struct Stamps(Vec<Option<(u64, SystemTime)>>);
 
 impl Stamps {
-    fn of(options: &Options) -> Self {
-        let stamp = |path: PathBuf| {
+    fn of(files: &[PathBuf]) -> Self {
+        let stamp = |path: &PathBuf| {
             let found = std::fs::metadata(path).ok()?;
             Some((found.len(), found.modified().ok()?))
         };
-        Self(run::inputs(options).into_iter().map(stamp).collect())
+        Self(files.iter().map(stamp).collect())
     }
 }

@@ -248,6 +248,28 @@ fn restitution_and_damping_come_back_within_two_percent() {
 }
 
 #[test]
+fn all_rows_up_to_the_horizon_of_the_fitted_values_count() {
+    let folder = folder("horizon");
+    std::fs::copy(scenario("free-rocking-on-beam.toml"), folder.join("scene.toml")).unwrap();
+    // With the scene's own friction the motion is predictable up to 0.52 s, with the one sought all the
+    // time, as the block slides off its edge.
+    let end = ["--set", "time.end=0.65 s"];
+    let truth = ["--set", "contact.feet.friction=0.1", "--set", "output.every=0.1 ms"];
+    done(&folder, &[&["run", "scene.toml", "--out", "truth", "--quiet"], &truth[..], &end[..]].concat());
+    let seen = frames(&folder.join("truth"), "rocker");
+    let rows: String = seen.iter().map(|[t, .., phi]| format!("{t:.6},{phi:.5}\n")).collect();
+    std::fs::write(folder.join("camera.csv"), format!("t,phi\n{rows}")).unwrap();
+    let arguments = ["fit", "scene.toml", "camera.csv", "--out", "fitted", "--quiet", "--shift", "0 s", "--sign", "1"];
+    let vary = ["--samples", "1", "--vary", "contact.feet.friction=0.05..0.9"];
+    done(&folder, &[&arguments[..], &vary[..], &end[..]].concat());
+    let found = read(&folder.join("fitted/fit.json"));
+    let number = |name: &str| found[name].as_f64().unwrap();
+    assert!((found["estimates"][0]["value"].as_f64().unwrap() / 0.1 - 1.0).abs() < 0.01, "{found}");
+    let predictable = seen.iter().filter(|row| row[0] <= number("horizon")).count();
+    assert!(number("horizon") > 0.64 && number("residuals") >= predictable as f64 - 1.0, "{found}");
+}
+
+#[test]
 fn keys_that_trade_off_are_told() {
     let folder = folder("trade-off");
     let scene = std::fs::read_to_string(scenario("free-rocking-on-beam.toml")).unwrap();
@@ -347,6 +369,8 @@ fn bad_measured_tables_are_refused_with_their_line() {
     );
     fit("contact.feet.friction=0.9..0.2", "the lower bound of contact.feet.friction must be below the upper one");
     fit("contact.feet.friction=-1..0.2", "must be at least 0");
+    fit("contact.feet.friction=-1..0.2", "--vary contact.feet.friction=-1..0.2");
+    fit("block.rocker.height=-1 cm..2 cm", "--vary block.rocker.height=-1.0 cm..2.0 cm");
     fit("contact.feet.fricton=0.1..0.2", "did you mean `contact.feet.friction`?");
     fit("block.rocker.height=1 mm..2 cm", "have the units `mm` and `cm`");
     fit("contact.feet.friction", "write KEY=LOW..HIGH");

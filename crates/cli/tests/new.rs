@@ -49,7 +49,12 @@ fn a_file_that_exists_is_not_replaced() {
     assert_eq!(unknown.status.code(), Some(2));
     assert!(text(&unknown.stderr).contains("did you mean `drop`?"));
     assert!(!folder.join("x.toml").exists());
+    // Written beside and renamed: what the old file's second name leads to is as it was.
+    std::fs::hard_link(folder.join("mine.toml"), folder.join("second.toml")).unwrap();
     assert!(teeter(&folder, &["new", "mine.toml", "--force"]).status.success());
+    assert_eq!(std::fs::read_to_string(folder.join("second.toml")).unwrap(), "mine");
+    let names: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(names.len(), 2, "{names:?}");
     assert!(std::fs::read_to_string(folder.join("mine.toml")).unwrap().contains("[block.rocker]"));
 }
 

@@ -288,6 +288,8 @@ const BEYOND: &[&str] = &[
     "points on one line",
     "lower face of a block above",
     "face of the ground",
+    "crest deep inside a block",
+    "disc on a sloping beam in equilibrium",
     "two patterns that say as much",
     "stones that are all prescribed",
     "contact of a pair that is kept apart",

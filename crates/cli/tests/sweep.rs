@@ -103,6 +103,18 @@ fn shards_merge_to_the_bytes_of_one_run_on_any_number_of_threads() {
 }
 
 #[test]
+fn notes_are_of_all_cases_also_of_those_that_ran_before() {
+    let sweep = "scene = \"rocking.toml\"\n[grid]\ncontact.feet.friction = [0.3, -1, 0.5]\n[outputs]\nnothing = \"no.such.value\"\n";
+    let folder = study("notes", sweep);
+    let first = done(&folder, &["sweep", "sweep.toml", "--out", "all"]);
+    let again = done(&folder, &["sweep", "sweep.toml", "--out", "all", "--resume"]);
+    for told in [first, again] {
+        assert!(told.contains("1 case has no result"), "{told}");
+        assert!(told.contains("warning: `nothing` is empty in all cases"), "{told}");
+    }
+}
+
+#[test]
 fn a_study_continues_after_a_kill_to_the_same_bytes() {
     let folder = study("resume", SWEEP);
     done(&folder, &["sweep", "sweep.toml", "--out", "all"]);

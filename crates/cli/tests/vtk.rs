@@ -70,6 +70,28 @@ fn pictures_hold_the_motion_of_the_tables() {
 }
 
 #[test]
+fn pictures_are_written_as_they_come() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("vtk-early");
+    let _ = std::fs::remove_dir_all(&folder);
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/free-rocking-on-ground.toml");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_teeter"));
+    command.arg("run").arg(scene).arg("--out").arg(&folder).args(["--quiet", "--no-report", "--vtk"]);
+    // 100 million steps, a picture after each 50 000.
+    let mut child = command.args(["--set", "time.end=10000 s", "--set", "output.every=1 s"]).spawn().unwrap();
+    let begin = std::time::Instant::now();
+    let second = folder.join("vtk/picture-0001.vtu");
+    while !second.exists() && begin.elapsed().as_secs() < 60 {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let ended = child.try_wait().unwrap();
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(ended.is_none() && second.exists(), "{ended:?}");
+    let picture = std::fs::read_to_string(second).unwrap();
+    assert!(picture.ends_with("</VTKFile>\n") && !folder.join("vtk/scene.pvd").exists());
+}
+
+#[test]
 fn meshio_reads_the_pictures() {
     let python = std::env::var("TEETER_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let python =

@@ -7,6 +7,7 @@ mod linear;
 mod modes;
 mod runge_kutta;
 mod smooth;
+mod turning;
 
 use crate::moreau_jean_located::{MoreauJeanLocated, MoreauJeanLocatedSettings};
 use crate::{

@@ -92,6 +92,18 @@ impl Axis {
         }
     }
 
+    /// A logarithmic axis with given ends. If these aren't a valid range of positive values, it goes from 1
+    /// to 10.
+    #[must_use]
+    pub fn logarithmic_between(label: impl Into<String>, low: f64, high: f64) -> Self {
+        let limited = |x: f64| x.log10().clamp(-MOST_DECADES, MOST_DECADES);
+        let (low, high) = match (limited(low), limited(high)) {
+            (low, high) if is_drawable(low, high) => (low, high),
+            _ => (0.0, 1.0),
+        };
+        Self { label: label.into(), scale: Scale::Logarithmic, low, high }
+    }
+
     /// Sets the low end, if it is below the high end and, on a logarithmic axis, positive.
     #[must_use]
     pub fn starting_at(mut self, low: f64) -> Self {
@@ -284,6 +296,17 @@ mod tests {
             assert!((round_down(power) - power).abs() < 1e-9 && (round_up(power) - power).abs() < 1e-9, "{x}");
         }
         assert_eq!((round_down(7f64.log10()), round_up(7f64.log10())), (5f64.log10(), 1.0));
+    }
+
+    #[test]
+    fn given_ends_of_a_logarithmic_axis_are_kept_if_they_are_a_range() {
+        let (low, high) = Axis::logarithmic_between("x", 0.3, 70.0).ends();
+        assert!((low / 0.3 - 1.0).abs() < 1e-12 && (high / 70.0 - 1.0).abs() < 1e-12);
+        for (low, high) in [(2.0, 2.0), (-1.0, 3.0), (5.0, 1.0), (f64::NAN, 1.0)] {
+            assert_eq!(Axis::logarithmic_between("x", low, high).ends(), (1.0, 10.0));
+        }
+        let (low, high) = Axis::logarithmic_between("x", 0.0, f64::INFINITY).ends();
+        assert!(low > 0.0 && high.is_finite());
     }
 
     #[test]

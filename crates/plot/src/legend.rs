@@ -68,7 +68,7 @@ impl<'a> Entry<'a> {
             Drawn::Line => Symbol::Line { number, dash: series.dash },
             Drawn::Marks { mark, hollow } => Symbol::Marks { mark, hollow, number },
             Drawn::Area => Symbol::Area(number),
-            Drawn::Cells { .. } => Symbol::Swatch(Colour::Series(number)),
+            Drawn::Cells => Symbol::Swatch(Colour::Series(number)),
         };
         (!series.label().is_empty()).then_some(Self { symbol, name: series.label() })
     }

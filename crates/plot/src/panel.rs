@@ -221,10 +221,9 @@ impl Panel {
             let path = line_path(area.points(), |x| frame.px(x), py);
             let _ = writeln!(svg, "<path d=\"{path}\" {}/>", area_style(area.number_at(k), theme));
         }
-        for (k, cells) in series.iter().enumerate() {
-            let Drawn::Cells { width, height } = cells.drawn else { continue };
+        for (k, cells) in series.iter().enumerate().filter(|(_, series)| series.drawn == Drawn::Cells) {
             let colour = Colour::Series(cells.number_at(k)).value(theme);
-            let path = cells_path(cells.points(), [width, height], |x| frame.px(x), py);
+            let path = cells_path(cells.points(), |x| frame.px(x), py);
             let _ = writeln!(svg, "<path d=\"{path}\" fill=\"{colour}\" stroke=\"none\"/>");
         }
         for (k, line) in series.iter().enumerate().filter(|(_, series)| series.drawn == Drawn::Line) {
@@ -353,25 +352,18 @@ fn draw_bands(svg: &mut String, frame: &Frame, theme: Theme, bands: &[Band]) {
     }
 }
 
-/// Rectangles about points; neighbours in a row are joined, which saves most of the text of a map.
-fn cells_path(
-    points: &[(f64, f64)],
-    [width, height]: [f64; 2],
-    px: impl Fn(f64) -> f64,
-    py: impl Fn(f64) -> f64,
-) -> String {
-    let mut finite: Vec<(f64, f64)> = points.iter().copied().filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
-    finite.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.total_cmp(&b.0)));
+/// Rectangles between pairs of corners; neighbours in a row are joined, which saves most of the text of
+/// a map.
+fn cells_path(corners: &[(f64, f64)], px: impl Fn(f64) -> f64, py: impl Fn(f64) -> f64) -> String {
+    // Left, right, bottom, top on the page.
+    let placed = corners.chunks_exact(2).map(|pair| [px(pair[0].0), px(pair[1].0), py(pair[0].1), py(pair[1].1)]);
+    let mut cells: Vec<[f64; 4]> = placed.filter(|cell| cell.iter().all(|side| side.is_finite())).collect();
+    cells.sort_by(|a, b| b[2].total_cmp(&a[2]).then(a[0].total_cmp(&b[0])));
+    let joined = |a: &[f64; 4], b: &[f64; 4]| a[2..] == b[2..] && b[0] - a[1] < 0.01;
     let mut path = String::new();
-    let mut rest = finite.as_slice();
-    while let Some(&(first, y)) = rest.first() {
-        let joined = |pair: &[(f64, f64)]| pair[1].1 == y && pair[1].0 - pair[0].0 <= 1.01 * width;
-        let count = 1 + rest.windows(2).take_while(|pair| joined(pair)).count();
-        let last = rest.get(count - 1).map_or(first, |point| point.0);
-        let (left, right) = (px(first - 0.5 * width), px(last + 0.5 * width));
-        let (top, bottom) = (py(y + 0.5 * height), py(y - 0.5 * height));
+    for row in cells.chunk_by(joined) {
+        let ([left, _, bottom, top], [_, right, ..]) = (row[0], row[row.len() - 1]);
         let _ = write!(path, "M{left:.2} {top:.2}H{right:.2}V{bottom:.2}H{left:.2}z");
-        rest = rest.get(count..).unwrap_or_default();
     }
     path
 }
@@ -417,8 +409,9 @@ mod tests {
 
     #[test]
     fn cells_of_a_row_are_one_rectangle_where_they_touch() {
-        let points = [(1.0, 0.0), (2.0, 0.0), (4.0, 0.0), (1.0, 1.0), (f64::NAN, 1.0)];
-        let path = cells_path(&points, [1.0, 1.0], |x| x, |y| -y);
+        let cell = |x: f64, y: f64| [(x - 0.5, y - 0.5), (x + 0.5, y + 0.5)];
+        let cells = [cell(1.0, 0.0), cell(2.0, 0.0), cell(4.0, 0.0), cell(1.0, 1.0), cell(f64::NAN, 1.0)];
+        let path = cells_path(&cells.concat(), |x| x, |y| -y);
         assert_eq!(path, "M0.50 -0.50H2.50V0.50H0.50zM3.50 -0.50H4.50V0.50H3.50zM0.50 -1.50H1.50V-0.50H0.50z");
     }
 

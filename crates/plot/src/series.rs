@@ -33,11 +33,8 @@ pub(crate) enum Drawn {
         hollow: bool,
     },
     Area,
-    /// Filled rectangles about the points, with these sides.
-    Cells {
-        width: f64,
-        height: f64,
-    },
+    /// Filled rectangles, each between two of the points.
+    Cells,
 }
 
 /// The marker shape of a series.
@@ -94,15 +91,12 @@ impl Series {
         Self { drawn: Drawn::Area, ..Self::line(label, outline) }
     }
 
-    /// Filled rectangles centred at points, with sides in the units of the axes: the cells of a map.
-    /// On linear axes; drawn below all lines.
+    /// Filled rectangles from left to right and from bottom to top, in the units of the axes: the cells of
+    /// a map. Drawn below all lines.
     #[must_use]
-    pub fn cells(
-        label: impl Into<String>,
-        points: impl IntoIterator<Item = (f64, f64)>,
-        [width, height]: [f64; 2],
-    ) -> Self {
-        Self { drawn: Drawn::Cells { width, height }, ..Self::line(label, points) }
+    pub fn cells(label: impl Into<String>, cells: impl IntoIterator<Item = ((f64, f64), (f64, f64))>) -> Self {
+        let corners = cells.into_iter().flat_map(|((left, right), (bottom, top))| [(left, bottom), (right, top)]);
+        Self { drawn: Drawn::Cells, ..Self::line(label, corners) }
     }
 
     /// Filled marks at points. Without a label they aren't in the legend.
@@ -161,7 +155,7 @@ impl Series {
         &self.label
     }
 
-    /// The points; for a staircase, its corners, for an area, its outline.
+    /// The points; for a staircase, its corners, for an area, its outline, for cells, two corners of each.
     #[must_use]
     pub fn points(&self) -> &[(f64, f64)] {
         &self.points

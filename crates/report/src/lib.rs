@@ -46,7 +46,7 @@ pub use page::{
     half_cycles, record_figures, record_page, render, spectrum_periods, thrust_lines,
 };
 pub use recorder::{ImpactRow, Record, Recorder};
-pub use results::{FILES, Reserved, Results, ResultsError};
+pub use results::{FILES, Reserved, Results, ResultsError, write_whole};
 pub use run_recorder::{Origin, RunRecorder};
 pub use schedule::Schedule;
 pub use sections::{BeamRecord, LargestStress, ReactionRange, envelopes};

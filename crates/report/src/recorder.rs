@@ -247,7 +247,7 @@ impl<'a> Recorder<'a> {
             bodies: Bodies::of(scene),
             places: Places::of(scene, layout),
             watch: Watch::of(scene, layout),
-            fate_watch: verdict::Watch::of(scene, layout).since(&kept.record.fates),
+            fate_watch: verdict::Watch::of(scene, layout),
             shortest_side: layout.blocks.iter().map(|place| place.side).fold(f64::INFINITY, f64::min),
             locates: scene.time.scheme == SchemeName::MoreauJeanLocated,
             line: String::new(),
@@ -417,7 +417,7 @@ impl Observer<2> for Recorder<'_> {
         self.kept.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
         self.kept.resolution.start(self.layout, state);
         self.kept.swings.start(&self.watch);
-        self.kept.record.fates.start(&mut self.fate_watch, self.layout, state);
+        self.kept.record.fates.start(&self.fate_watch, self.layout, model, state)?;
         self.places.look(self.layout, state, &mut self.kept.record.deflections);
         let (record, values) = (&mut self.kept.record, &mut self.kept.section_values);
         self.sections.start(self.layout, state, &mut record.beams, values);

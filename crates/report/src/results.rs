@@ -326,8 +326,12 @@ impl Drop for Reserved {
     }
 }
 
-/// Writes a file and the folder that it is in, under a temporary name until it is complete.
-pub(crate) fn write_whole(path: &Path, content: &[u8]) -> Result<(), ResultsError> {
+/// Writes a file and the folder that it is in, under a temporary name until it is complete; one that is
+/// there is replaced.
+///
+/// # Errors
+/// If it can't be written; then what was there is still there.
+pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), ResultsError> {
     let temporary = temporary(path);
     let written = path
         .parent()

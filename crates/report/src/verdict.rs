@@ -6,14 +6,15 @@
 mod carrier;
 mod headline;
 mod stance;
+mod standing;
 
 use carrier::Carrier;
 pub(crate) use headline::headline;
 use serde::{Deserialize, Serialize};
 pub use stance::Way;
 use stance::{Edge, Outline, Stance};
-use teeter_integrator::{RockingMonitor, State};
-use teeter_scenario::scene::{BlockScene, Placement, Scene, StopScene};
+use teeter_integrator::{Mismatch, Model, RockingMonitor, State};
+use teeter_scenario::scene::{BlockScene, Placement, Scene, StopScene, SupportingBody};
 use teeter_scenario::simulation::Layout;
 
 /// A block is still below this part of √(gR): then no point of it rises by more than half a millionth of R by its speed alone.
@@ -101,8 +102,11 @@ pub struct BodyVerdict {
 /// What is known of a block so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Seen {
-    /// The angle that its stance is about, and its angle at the end of the last step, rad.
-    began: f64,
+    /// The angle that its stance is about, rad; `None` of a block that began in flight and has not settled yet.
+    began: Option<f64>,
+    /// Of such a block: since when nothing but a push could turn it over, s, and its angle then, rad.
+    settling: Option<(f64, f64)>,
+    /// Its angle at the end of the last step, rad.
     angle: f64,
     /// The largest |φ|/α.
     part: Option<f64>,
@@ -117,9 +121,9 @@ struct Seen {
     out: Option<(f64, Way)>,
     /// Since when it is below everything, s.
     sunk: Option<f64>,
-    /// Where it stood at the start along what carries it, m.
+    /// Where it began to stand along what carries it, m.
     stood: Option<f64>,
-    /// How it stood at the start, once known.
+    /// How it stands, or would if it settled at its angle, once known.
     #[serde(skip)]
     stance: KnownStance,
 }
@@ -158,8 +162,6 @@ pub(crate) struct Watch {
 struct Watched {
     carrier: Carrier,
     outline: Option<Outline>,
-    /// How it stood at the start.
-    stance: Option<Stance>,
     /// Largest distance of a point of it from the mass centre, m.
     reach: f64,
     /// m/s.
@@ -169,8 +171,8 @@ struct Watched {
     mass: f64,
     inertia: f64,
     gravity: f64,
-    /// Whether it was placed on something.
-    placed: bool,
+    /// What it was placed on.
+    on: Option<SupportingBody>,
     /// Whether its motion is prescribed: nothing becomes of it.
     driven: bool,
     /// Its feet, left and right, in its own frame, m; none without a base.
@@ -187,14 +189,16 @@ impl Watch {
             Watched {
                 carrier: Carrier::of(scene, layout, number),
                 outline: Outline::of(block, scene.gravity),
-                stance: None,
                 reach,
                 still_speed: STILL * (gravity * reach).sqrt(),
                 still_time: (reach / gravity).sqrt(),
                 mass: of.map_or(0.0, |of| of.mass),
                 inertia: of.map_or(0.0, |of| of.inertia),
                 gravity,
-                placed: matches!(block.placement, Placement::On { .. }),
+                on: match block.placement {
+                    Placement::On { support, .. } => Some(support),
+                    Placement::Free { .. } => None,
+                },
                 driven: block.motion.is_given(),
                 feet: (block.base() > 0.0).then(|| feet.map(|foot| [corners[foot].x, corners[foot].y])),
             }
@@ -203,19 +207,6 @@ impl Watch {
             blocks: scene.blocks.iter().enumerate().map(watched).collect(),
             stop: scene.time.stop,
             settles_at: scene.settles_at(),
-        }
-    }
-
-    /// The same for blocks that began as these did.
-    pub(crate) fn since(mut self, fates: &Fates) -> Self {
-        self.stand(fates);
-        self
-    }
-
-    fn stand(&mut self, fates: &Fates) {
-        for (watched, seen) in self.blocks.iter_mut().zip(&fates.blocks) {
-            let found = || watched.outline.as_ref().and_then(|outline| outline.stance(seen.began));
-            watched.stance = seen.stance.0.unwrap_or_else(found);
         }
     }
 }
@@ -233,30 +224,47 @@ impl Watched {
         Some(foot + if ahead { half } else { -half })
     }
 
+    /// Velocity and angular velocity relative to what carries it.
+    fn velocity(&self, layout: &Layout, number: usize, state: &State) -> [f64; 3] {
+        let range = layout.blocks[number].range.clone();
+        let (q, v) = (&state.q[range.clone()], &state.v[range]);
+        let carrier = self.carrier.velocity([q[0], q[1]], layout, state);
+        [v[0] - carrier[0], v[1] - carrier[1], v[2] - carrier[2]]
+    }
+
+    /// The work that takes it from an angle to an edge by a turn about its corner, J.
+    fn lift(&self, edge: Edge, angle: f64) -> f64 {
+        self.mass * self.gravity * edge.arm * (1.0 - (angle - edge.top).cos())
+    }
+
     /// Whether a block that is past an edge has the energy to come back over it, as it moves now.
     fn comes_back(&self, edge: Edge, way: Way, angle: f64, spin: f64) -> bool {
         let inwards = -way.sign() * spin;
-        let lift = self.mass * self.gravity * edge.arm * (1.0 - (angle - edge.top).cos());
-        inwards > 0.0 && 0.5 * (self.inertia + self.mass * edge.arm * edge.arm) * inwards * inwards > lift
+        let energy = 0.5 * (self.inertia + self.mass * edge.arm * edge.arm) * inwards * inwards;
+        inwards > 0.0 && energy > self.lift(edge, angle)
     }
 }
 
 impl Fates {
     /// Before the first step.
-    pub(crate) fn start(&mut self, watch: &mut Watch, layout: &Layout, state: &State) {
+    pub(crate) fn start(
+        &mut self,
+        watch: &Watch,
+        layout: &Layout,
+        model: &Model<2>,
+        state: &State,
+    ) -> Result<(), Mismatch> {
         self.blocks.clear();
-        for (number, watched) in watch.blocks.iter().enumerate() {
+        let standing = standing::at_start(&watch.blocks, layout, model, state)?;
+        for (number, (watched, stands)) in watch.blocks.iter().zip(standing).enumerate() {
             let angle = state.q[layout.blocks[number].range.start + 2];
-            let stood = watched.place(layout, number, state);
             // What was placed on something stands there, however far it is tilted.
-            let tilt = if watched.placed { layout.tilt(number, &state.q) } else { 0.0 };
-            self.blocks.push(Seen { began: angle - tilt, angle, stood, ..Seen::default() });
-        }
-        watch.stand(self);
-        for (seen, watched) in self.blocks.iter_mut().zip(&watch.blocks) {
-            seen.stance = KnownStance(Some(watched.stance));
+            let tilt = if watched.on.is_some() { layout.tilt(number, &state.q) } else { 0.0 };
+            let stood = if stands { watched.place(layout, number, state) } else { None };
+            self.blocks.push(Seen { began: stands.then_some(angle - tilt), angle, stood, ..Seen::default() });
         }
         self.look(watch, layout, state.t, state);
+        Ok(())
     }
 
     /// Takes a step in that began at `before` (s).
@@ -273,9 +281,16 @@ impl Fates {
                 continue;
             }
             let place = &layout.blocks[number];
-            let (q, v) = (&state.q[place.range.clone()], &state.v[place.range.clone()]);
+            let q = &state.q[place.range.clone()];
             let t = state.t;
-            if let Some(stance) = &watched.stance {
+            if seen.began.is_none() {
+                seen.settle(watched, layout, number, state);
+            }
+            let stance = seen.stance(watched);
+            if seen.began.is_some() {
+                seen.stance = KnownStance(Some(stance));
+            }
+            if let Some(stance) = stance {
                 let slope = watched.carrier.slope(&state.q);
                 if let Some(part) = stance.part(q[2], slope) {
                     seen.part = Some(seen.part.map_or(part, |most| most.max(part)));
@@ -296,8 +311,8 @@ impl Fates {
                 }
             }
             seen.angle = q[2];
-            let [vx, vy, spin] = watched.carrier.velocity([q[0], q[1]], layout, state);
-            let speed = (v[0] - vx).hypot(v[1] - vy) + watched.reach * (v[2] - spin).abs();
+            let [vx, vy, spin] = watched.velocity(layout, number, state);
+            let speed = vx.hypot(vy) + watched.reach * spin.abs();
             seen.still = if speed <= watched.still_speed { seen.still.or(Some(t)) } else { None };
             if let Some(past) = watched.carrier.past_end([q[0], q[1]], layout, &state.q) {
                 seen.out = match past {
@@ -350,7 +365,7 @@ impl Fates {
         state: &State,
         rocking: &[RockingMonitor],
     ) -> Vec<BodyVerdict> {
-        let watch = Watch::of(scene, layout).since(self);
+        let watch = Watch::of(scene, layout);
         let of = |(number, (seen, watched)): (usize, (&Seen, &Watched))| {
             (!watched.driven).then(|| seen.verdict(watched, number, layout, state, rocking.get(number)))
         };
@@ -371,7 +386,7 @@ impl Seen {
         let spin = state.v[layout.blocks[number].range.start + 2];
         let overturned = self.beyond.filter(|(_, way)| {
             let comes_back = || {
-                let edge = watched.stance.as_ref().map(|stance| stance.edge(*way));
+                let edge = self.stance(watched).map(|stance| stance.edge(*way));
                 edge.is_some_and(|edge| watched.comes_back(edge, *way, self.angle, spin))
             };
             self.fallen || rests.is_some() || !comes_back()

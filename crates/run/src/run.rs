@@ -60,7 +60,6 @@ impl FinishedRun {
 struct RecordedRun {
     record: Record,
     page: PageRecorder,
-    vtk: Option<VtkRecorder>,
     exporter: Option<Exporter>,
     ended: EndedWord,
     /// Time of its steps, s.
@@ -154,7 +153,7 @@ impl Prepared {
             recorder = recorder.until(Arc::clone(&cancel));
             self.simulation.cancelled_by(cancel);
         }
-        let mut vtk = self.job.vtk.then(|| VtkRecorder::new(scene, layout, scene.every));
+        let mut vtk = self.job.vtk.then(|| VtkRecorder::new(results, scene, layout, scene.every));
         let ran = match &mut vtk {
             None => self.simulation.run(&mut [&mut recorder, &mut teller]),
             Some(vtk) => self.simulation.run(&mut [&mut recorder, &mut teller, vtk]),
@@ -162,6 +161,8 @@ impl Prepared {
         teller.tell(&self.simulation.state);
         let seconds = recorder.seconds();
         let (mut record, page, exporter) = recorder.into_parts();
+        // The list of the pictures that there are, however the run ended.
+        let listed = vtk.map_or(Ok(()), |vtk| vtk.finish());
         let ended = match ran {
             Ok(ended) => {
                 if let Ended::Failed(error) = &ended {
@@ -179,7 +180,11 @@ impl Prepared {
             },
             Err(error) => return Err(RunError::Steps(error)),
         };
-        Ok(RecordedRun { record, page, vtk, exporter, ended, seconds })
+        match listed {
+            Err(error) if ended == EndedWord::DiskFull && error.is_disk_full() => {}
+            listed => listed.map_err(RunError::Write)?,
+        }
+        Ok(RecordedRun { record, page, exporter, ended, seconds })
     }
 }
 
@@ -193,13 +198,9 @@ fn write(
     scene_as_run: &str,
     report: bool,
 ) -> Result<Summary, RunError> {
-    let RecordedRun { record, page, vtk, ended, seconds, .. } = recorded;
+    let RecordedRun { record, page, ended, seconds, .. } = recorded;
     let summary = Summary::new(scene, layout, state, &record, ended, seconds);
-    let pictures = vtk.iter().flat_map(VtkRecorder::files);
-    let pictures = pictures.map(|(name, text)| results.write(&name, text).map_err(RunError::Write));
-    let written = pictures
-        .collect::<Result<(), RunError>>()
-        .and_then(|()| write_files(results, &record, scene, layout, &page, &summary, report.then_some(scene_as_run)));
+    let written = write_files(results, &record, scene, layout, &page, &summary, report.then_some(scene_as_run));
     match written {
         // There is no room for these either; the summary still has the reason.
         Err(RunError::Write(error)) if ended == EndedWord::DiskFull && error.is_disk_full() => {}

@@ -67,6 +67,11 @@ impl BuildError {
                 };
                 document.error(&place_of(block, document), rule, remedy)
             }
+            Self::CrestInside { block, crest } => document.error(
+                &place_of(block, document),
+                format!("the ground's crest-{crest}, point {crest} of its profile, starts inside the block"),
+                "move the block, or the point",
+            ),
             Self::Overlap { first, second, depth } => document.error(
                 &place_of(second, document),
                 format!("`{second}` overlaps `{first}` by {} at the start", with_digits(*depth, "m", 2)),
@@ -155,6 +160,8 @@ fn placement(error: &PlacementError, document: &Document) -> Diagnostic {
             match motion {
                 InstabilityMode::Slides => "increase the friction, place the block where the beam stays level, or start undeformed",
                 InstabilityMode::Tips => "move the block, use a stiffer beam, or start undeformed",
+                InstabilityMode::Rolls => "place it where the beam stays level, hold it between other blocks, or start undeformed",
+                InstabilityMode::FallsOver => "turn it so that it stands on a side, or start undeformed",
                 InstabilityMode::ChangesFoot => "tilt it more, or the other way, use a stiffer beam, or start undeformed",
                 InstabilityMode::LiftsOff => "check gravity and forces at t = 0, or start undeformed",
             },

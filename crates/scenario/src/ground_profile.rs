@@ -1,7 +1,9 @@
 //! Ground with a profile: where blocks are placed on it, and its contacts.
 
+use crate::overlap::{Outline, PlacedOutline};
 use crate::placement::centre_above;
 use crate::scene::{BlockScene, GroundScene, Placement, Scene, SupportingBody};
+use crate::simulation::Layout;
 use nalgebra::{Vector2, Vector3};
 use teeter_detect::{Profile, ProfilePair};
 use teeter_rigid::Pose;
@@ -18,6 +20,47 @@ const SAME_SLOPE: f64 = 1e-15;
 /// The profile of the ground of a scene, if it has one.
 pub(crate) fn of(scene: &Scene) -> Option<&Profile> {
     scene.ground.as_ref()?.profile.as_deref()
+}
+
+/// How far down from a crest it is looked whether the ground there is inside a block, relative to
+/// the block's larger side.
+const BELOW_A_CREST: f64 = 1e-3;
+
+/// What is less inside than this, relative to the block's larger side, is rounding.
+const ROUNDING: f64 = 1e-8;
+
+/// The first block, by its number, that starts with a crest of the ground inside it, and the
+/// crest's point, from 1 on. Contacts don't tell: they are with the side that is nearest to a
+/// crest, which faces away from one that is in deep; and in the seam of two parts the depth is zero.
+/// So it is the ground just below the crest that is looked for.
+pub(crate) fn crest_inside(scene: &Scene, layout: &Layout, q: &[f64]) -> Option<(usize, usize)> {
+    let profile = of(scene)?;
+    let slope = scene.ground.as_ref().map_or(0.0, |ground| ground.incline);
+    let place = layout
+        .ground
+        .as_ref()
+        .map_or(Vector3::new(0.0, 0.0, slope), |range| Vector3::from_column_slice(&q[range.clone()]));
+    let points: Vec<Vector2<f64>> = profile.points().map(|point| Pose::new(&place).point(&point)).collect();
+    let on_ground = scene.contacts.iter().filter(|contact| contact.surface == SupportingBody::Ground);
+    on_ground.map(|contact| contact.block).find_map(|number| {
+        let block = &scene.blocks[number];
+        let at = &q[layout.blocks[number].range.clone()];
+        let outline = PlacedOutline::new([at[0], at[1]], at[2], &Outline::of(block));
+        let side = block.width.max(block.height);
+        let is_inside = |three: &[Vector2<f64>]| {
+            let down = [three[0] - three[1], three[2] - three[1]];
+            let is_crest = down[1].perp(&down[0]) < 0.0;
+            let near = BELOW_A_CREST * side;
+            // Between the two pieces that lead down from it is ground.
+            is_crest
+                && [0.1, 0.5, 0.9].into_iter().any(|share| {
+                    let step = |way: &Vector2<f64>| way * (near / way.norm()).min(1.0);
+                    let below = three[1] + share * step(&down[0]) + (1.0 - share) * step(&down[1]);
+                    outline.depth_of([below.x, below.y]) > ROUNDING * side
+                })
+        };
+        points.windows(3).position(is_inside).map(|first| (number, first + 2))
+    })
 }
 
 /// The line on which the base of a block of this width rests, with the midpoint of the base at x =

@@ -57,6 +57,7 @@ pub mod resolve;
 mod rocking;
 pub mod scene;
 mod scene_checks;
+mod separators;
 mod signal_resolution;
 pub mod simulation;
 mod stable_step;

@@ -6,6 +6,7 @@ use crate::diagnostic::printable;
 use crate::dimension::Dimension;
 use crate::keys::Range;
 use crate::quantity;
+use crate::separators::with_commas;
 use teeter_integrator::{SignalError, Table};
 
 /// Largest file accepted, bytes.
@@ -54,8 +55,8 @@ pub(crate) fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
     })
 }
 
-/// Reads a table of numbers: separated by commas, with the same number of columns in each row; a
-/// first row of words is a heading, lines that start with `#` are comments. `names` describes the
+/// Reads a table of numbers: separated by commas, semicolons, tabs or blanks (with any but the first,
+/// a comma may be the decimal point), with the same number of columns in each row; a first row of words is a heading, lines that start with `#` are comments. `names` describes the
 /// columns in messages; `dimensions` are theirs, in SI units unless the heading gives another unit,
 /// as `t [ms]`. Numbers must be within the limits of keys.
 ///
@@ -70,7 +71,8 @@ pub(crate) fn columns(
     if bytes.len() > LARGEST_RECORD {
         return Err(format!("larger than {} MB, the limit of a table", LARGEST_RECORD / 1_000_000));
     }
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let bytes = with_commas(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes))?;
+    let bytes = bytes.as_ref();
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .comment(Some(b'#'))
@@ -141,7 +143,9 @@ pub(crate) fn points(
     if bytes.len() > LARGEST_RECORD {
         return Err(format!("larger than {} MB, the limit of a table", LARGEST_RECORD / 1_000_000));
     }
-    let text = String::from_utf8_lossy(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes));
+    let bytes = with_commas(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes))?;
+    let bytes = bytes.as_ref();
+    let text = String::from_utf8_lossy(bytes);
     let heading = text.lines().enumerate().find(|(_, line)| is_row(line));
     let heading = heading.map(|(index, line)| (index + 1, line.split(',').collect::<Vec<_>>()));
     let heading = heading.filter(|(_, cells)| cells.iter().all(|cell| is_word(cell.trim().as_bytes())));
@@ -365,6 +369,15 @@ mod tests {
     }
 
     #[test]
+    fn a_table_by_any_separator_is_read() {
+        for text in ["t [ms];a\n0;1,5\n500;-2\n", "t [ms]\ta\n0\t1.5\n500\t-2\n", "# c\n0 1.5\n0.5  -2\n"] {
+            assert_eq!(read(text.as_bytes(), 1.0).unwrap().ends(), [(1.0, 1.5), (1.5, -2.0)], "{text}");
+        }
+        let found = points(b"x [mm];y [mm]\n0;1,5\n10;2\n", Some(["x", "y"]), None).unwrap();
+        assert_eq!(found.columns, [vec![0.0, 0.01], vec![0.0015, 0.002]]);
+    }
+
+    #[test]
     fn units_of_a_heading_are_honoured_or_refused() {
         for heading in ["t [ms], a", "t (ms), a [-]", "\"time [ms]\",\"a\""] {
             let table = read(format!("{heading}\n0, 1\n0.3, 2\n1e1, -2\n").as_bytes(), 1.0).unwrap();
@@ -392,14 +405,15 @@ mod tests {
         );
         assert_eq!(told("t,a\n0,1\n"), "it has 1 row of numbers, but a table needs two or more");
         assert_eq!(told(""), "it has 0 rows of numbers, but a table needs two or more");
+        // The first rows decide; others are told.
         assert_eq!(
-            told("t;a\n0;1\n"),
-            "line 2: 1 column, but a table has two, t and value, separated by a comma; these are separated by a semicolon"
+            told("t,a\n0,1\n1;2\n"),
+            "line 3: 1 column, but a table has two, t and value, separated by a comma; these are separated by a semicolon"
         );
-        assert!(told("0;1\n1;2\n").starts_with("line 1: 1 column"), "no heading");
-        assert!(told("0,5;1\n1;2\n").ends_with("these are separated by a semicolon"));
-        assert!(told("0\t1\n").ends_with("these are separated by a tab"));
-        assert!(told("0 1\n").ends_with("these are separated by blanks"));
+        assert!(told("0,1\n1,1\n2\t1\n").ends_with("these are separated by a tab"));
+        assert!(told("0,1\n1,1\n2 1\n").ends_with("these are separated by blanks"));
+        assert_eq!(told("t;a\n0;1,5\n1;high\n"), "line 3: `high` is not a number");
+        assert_eq!(told("0 1\n1 nan\n"), "line 2: the value is NaN, but must be finite");
         assert!(told("1e400x,2\n0,1\n1,2\n").starts_with("line 1: `1e400x` is not a number"));
         assert_eq!(told("0,1\n1,2,3\n"), "line 2: 3 columns, but a table has two, t and value, separated by a comma");
         assert_eq!(told("0,1\n1,high\n"), "line 2: `high` is not a number");

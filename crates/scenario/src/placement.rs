@@ -83,6 +83,10 @@ pub enum InstabilityMode {
     Tips,
     /// It is lifted off.
     LiftsOff,
+    /// It rolls: what it stands on is round.
+    Rolls,
+    /// It falls over the single corner on which it stands.
+    FallsOver,
     /// Held at its tilt, it would stand on its other foot.
     ChangesFoot,
 }
@@ -93,6 +97,10 @@ impl std::fmt::Display for InstabilityMode {
             Self::Slides => "slides, as friction can't hold it",
             Self::Tips => {
                 "tips: the resultant of its weight and the forces on it doesn't pass between its feet, or the beam yields too much under them"
+            }
+            Self::Rolls => "rolls, as it is round where it stands, and the surface slopes there or a force pushes it along",
+            Self::FallsOver => {
+                "falls over the single corner on which it stands: the resultant of its weight and the forces on it doesn't pass through that"
             }
             Self::LiftsOff => "lifts off, as the forces on it point upwards",
             Self::ChangesFoot => "would stand on its other foot, as the slope under it exceeds its tilt",

@@ -20,7 +20,9 @@ pub struct BlockPreview {
     pub name: String,
     /// Mass, kg.
     pub mass: f64,
-    /// Critical angle α = atan(b/H), rad.
+    /// The angle at which it lies flat on the side on which it starts, rad: 0 upright.
+    pub flat: f64,
+    /// The critical angle about that side, rad: upright α = atan(b/H).
     pub critical_angle: Option<f64>,
     /// Angle at the start, rad.
     pub angle: f64,
@@ -134,8 +136,10 @@ impl Preview {
                 Placement::Free { angle, .. } => (angle, None),
                 Placement::On { tilt, support, .. } => (tilt, Some(scene.name_of(support).to_owned())),
             };
-            let (mass, critical_angle) = (block.mass(), block.critical_angle());
-            BlockPreview { name: block.name.clone(), mass, critical_angle, angle, on }
+            // What is placed on something stands on its base, however far it is tilted.
+            let near = if on.is_some() { 0.0 } else { angle };
+            let (flat, critical_angle) = block.flat_near(near).map_or((0.0, None), |[flat, alpha]| (flat, Some(alpha)));
+            BlockPreview { name: block.name.clone(), mass: block.mass(), flat, critical_angle, angle, on }
         };
         Self {
             blocks: scene.blocks.iter().map(block).collect(),

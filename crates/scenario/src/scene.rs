@@ -15,6 +15,7 @@ pub use history::{AxisScene, ForceScene, History, LoadKind, LoadScene, MotionSce
 pub use reduction::Reduction;
 
 use nalgebra::Vector2;
+use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 use teeter_detect::{Polygon, Shape, ShapeError};
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
@@ -631,6 +632,16 @@ impl BlockScene {
     #[must_use]
     pub fn critical_angle(&self) -> Option<f64> {
         self.parts.is_none().then(|| self.width.atan2(self.height))
+    }
+
+    /// The angle nearest to this one at which a rectangle lies flat, on whichever side, and the
+    /// critical angle about that side, rad: upright α, on its side atan(H/b); `None` for other shapes.
+    #[must_use]
+    pub fn flat_near(&self, angle: f64) -> Option<[f64; 2]> {
+        let upright = self.critical_angle()?;
+        let quarters = (angle / FRAC_PI_2).round();
+        let on_side = quarters.rem_euclid(2.0) == 1.0;
+        Some([quarters * FRAC_PI_2, if on_side { FRAC_PI_2 - upright } else { upright }])
     }
 
     /// The corners at the left and the right end of its base: the lowest ones, as it is drawn; both

@@ -5,10 +5,10 @@ use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::mesh_error::{self, MeshComparison};
 use crate::resolve::names::table_of;
-use crate::scene::{BeamScene, BlockScene, Placement, Scene, SupportingBody};
+use crate::scene::{BeamScene, BlockScene, ForceScene, Placement, Scene, SupportingBody};
 use crate::{deflection, flexibility, preview, rocking, signal_resolution, stable_step, swing, unused_keys, wording};
 use std::collections::BTreeMap;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use teeter_beam::{Axial, Beam, Digits, MatrixWeights};
 use teeter_integrator::{ImpactLaw, PairLaw};
 use teeter_text::readable::with_digits;
@@ -47,6 +47,7 @@ pub(crate) fn check(scene: &Scene, document: &Document) -> SceneFindings {
         findings.warnings.extend(tilt(block, incline, touches, document));
         findings.notes.extend(slides(block, incline, scene, document));
     }
+    findings.warnings.extend(scene.forces.iter().filter_map(|force| without_effect(force, scene, document)));
     for (number, beam) in scene.beams.iter().enumerate() {
         findings.warnings.extend(thick(beam, document));
         findings.warnings.extend(of_model(beam, scene, document));
@@ -144,6 +145,11 @@ fn digits(beam: &BeamScene, model: &Beam, scene: &Scene, document: &Document) ->
     let step = full.then(|| preview::step_digits(model, scene.time.theta, scene.time.step)).flatten();
     let step = step.map(|digits| (digits, "a step's solve"));
     let statics = || {
+        // What only blocks hold up is solved for with them, not with the beam's stiffness alone: that is singular, and what its
+        // factor is by rounding tells nothing.
+        if model.rigid_motion().is_some() {
+            return None;
+        }
         let weights = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
         model.digits(weights).ok().map(|digits| (digits.of_refined(), "the static start"))
     };
@@ -220,21 +226,45 @@ fn slides(block: &BlockScene, incline: f64, scene: &Scene, document: &Document) 
     Some(document.error("ground.incline", rule, "no change is needed if that is intended").as_note())
 }
 
+/// Warns of a force whose block can't follow it.
+fn without_effect(force: &ForceScene, scene: &Scene, document: &Document) -> Option<Diagnostic> {
+    let block = &scene.blocks[force.block];
+    let given = [force.force[0], force.force[1], force.couple];
+    let moves = given.iter().zip(&block.motion.0).any(|(given, prescribed)| *given != 0.0 && prescribed.is_none());
+    if moves || !block.motion.is_given() || given == [0.0; 3] {
+        return None;
+    }
+    let table = table_of(document, &block.name);
+    let (why, remedy) = if document.flag(&format!("block.{table}.fixed")) == Some(true) {
+        ("is fixed", "put it on a block that can move, or leave out `fixed`")
+    } else {
+        (
+            "moves as prescribed, whatever acts on it in this direction",
+            "put it on a block that can move, or leave out `motion`",
+        )
+    };
+    let rule = format!("has no effect: `{}` {why}", block.name);
+    Some(document.error(&format!("force.{}.on", force.name), rule, remedy).as_warning())
+}
+
 /// Warns of a block tilted so far that it may overturn.
 fn tilt(block: &BlockScene, incline: f64, touches: bool, document: &Document) -> Option<Diagnostic> {
-    let alpha = block.critical_angle()?;
     let table = table_of(document, &block.name);
-    let (key, angle) = match block.placement {
-        Placement::On { tilt, .. } => ("tilt", incline + tilt),
-        // In flight any angle is fine, and so is one at random.
-        Placement::Free { angle, .. }
-            if touches && angle.abs() >= alpha && document.is_given(&format!("block.{table}.angle")) =>
-        {
-            ("angle", angle)
+    let (key, angle, [flat, alpha]) = match block.placement {
+        Placement::On { tilt, .. } => ("tilt", incline + tilt, [0.0, block.critical_angle()?]),
+        Placement::Free { angle, .. } => {
+            let [flat, alpha] = block.flat_near(angle)?;
+            // In flight any angle is fine, and so is one at random.
+            let is_told = touches && document.is_given(&format!("block.{table}.angle"));
+            if !is_told || (angle - flat).abs() < alpha {
+                return None;
+            }
+            ("angle", angle - flat, [flat, alpha])
         }
-        Placement::Free { .. } => return None,
     };
-    let critical = format!("the critical angle atan(width/height) = {:.2} deg of this block", alpha.to_degrees());
+    let on_side = (flat / FRAC_PI_2).rem_euclid(2.0) == 1.0;
+    let (ratio, lies) = if on_side { ("height/width", ", which lies on its side") } else { ("width/height", "") };
+    let critical = format!("the critical angle atan({ratio}) = {:.2} deg of this block{lies}", alpha.to_degrees());
     let rule = if angle.abs() >= alpha {
         format!("at or beyond {critical}: released at rest it overturns")
     } else if angle.abs() >= NEAR_CRITICAL * alpha {
@@ -437,7 +467,7 @@ mod tests {
     fn a_block_in_the_air_may_have_any_angle() {
         let free = |contact: &str| {
             let text = SCENE
-                .replace("on = 'b'\nat = '50 cm'", "position = ['0.5 m', '2 m']\nangle = '80 deg'")
+                .replace("on = 'b'\nat = '50 cm'", "position = ['0.5 m', '2 m']\nangle = '40 deg'")
                 .replace("[contact.c]\nbetween = ['k', 'b']\nfriction = 0.5\n", contact);
             crate::load(text.as_bytes(), "f", "f", &[]).unwrap().warnings.len()
         };

@@ -83,6 +83,14 @@ pub enum BuildError {
         /// Largest allowed depth, m.
         tolerance: f64,
     },
+    /// A crest of the ground that starts inside a block.
+    #[error("block `{block}`: the ground's crest-{crest} starts inside it")]
+    CrestInside {
+        /// The block.
+        block: String,
+        /// The point of the profile, from 1 on.
+        crest: usize,
+    },
     /// An invalid shape of a block.
     #[error(transparent)]
     Shape(#[from] ShapeError),
@@ -618,7 +626,10 @@ fn check_start(scene: &Scene, model: &Model<2>, layout: &Layout, q: &[f64]) -> R
             });
         }
     }
-    Ok(())
+    match ground_profile::crest_inside(scene, layout, q) {
+        Some((block, crest)) => Err(BuildError::CrestInside { block: scene.blocks[block].name.clone(), crest }),
+        None => Ok(()),
+    }
 }
 
 #[cfg(test)]

@@ -456,7 +456,8 @@ fn refusal(scene: &Scene, beam: &str, pairs: &[EquilibriumPair], error: Equilibr
     let beam = beam.to_owned();
     match error {
         EquilibriumError::Leaves { contact, lifted, slid, .. } => {
-            let block = pairs.get(contact.pair() as usize).map_or(0, |pair| scene.contacts[pair.contact].block);
+            let pair = pairs.get(contact.pair() as usize).map(|pair| &scene.contacts[pair.contact]);
+            let (block, friction) = pair.map_or((0, 0.0), |pair| (pair.block, pair.law.friction));
             let of = &scene.blocks[block];
             let forces = scene.forces.iter().filter(|force| force.block == block);
             let pushed: f64 = forces.map(|force| force.force[1] * force.history.signal().value(0.0)).sum();
@@ -465,6 +466,9 @@ fn refusal(scene: &Scene, beam: &str, pairs: &[EquilibriumPair], error: Equilibr
             } else if foot_of(scene, block).is_some() {
                 // Its angle is held, and its foot doesn't slide.
                 InstabilityMode::ChangesFoot
+            } else if !(of.base() > 0.0) && friction > 0.0 {
+                let is_round = of.corner_radius(of.feet()[0]) > 0.0;
+                if is_round { InstabilityMode::Rolls } else { InstabilityMode::FallsOver }
             } else if lifted > LIFTED * slid {
                 InstabilityMode::Tips
             } else {

@@ -87,7 +87,7 @@ fn decode_parsed(
     sets: &[(String, String)],
 ) -> Decoded {
     let file = source.file.clone();
-    let file = file.as_str();
+    let file: &str = &file;
     let syntax::Parsed { mut root, errors, bad_lines, complete } = parsed;
     let mut found = Diagnostics(errors);
     found.0.extend(sets::apply(schema, &mut root, sets, &source));

@@ -33,8 +33,10 @@ pub struct Diagnostic {
     pub position: Option<(usize, usize)>,
     /// Range of bytes of the source that it concerns.
     pub span: Option<Range<usize>>,
-    /// `KEY=VALUE`, if it concerns a `--set` instead of the file.
+    /// `KEY=VALUE`, if it concerns an option of the command line instead of the file.
     pub set: Option<String>,
+    /// That option: `--set`, or what the user wrote instead.
+    pub option: &'static str,
     /// Full path of the key, such as `beam.table.thickness`; empty if it concerns no key.
     pub path: String,
     /// The value as written, shortened if long.
@@ -56,6 +58,7 @@ impl Diagnostic {
             position: None,
             span: None,
             set: None,
+            option: "--set",
             path: String::new(),
             written: None,
             rule: rule.into(),
@@ -101,7 +104,7 @@ impl fmt::Display for Diagnostic {
             Severity::Note => "note: ",
         })?;
         match (&self.set, self.position) {
-            (Some(set), _) => write!(f, "--set {}: ", printable(set))?,
+            (Some(set), _) => write!(f, "{} {}: ", self.option, printable(set))?,
             (None, Some((line, column))) => write!(f, "{}:{line}:{column}: ", self.file)?,
             (None, None) => write!(f, "{}: ", self.file)?,
         }

@@ -1,6 +1,7 @@
 //! The text of a file: positions in it, and where each value came from.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Severity, printable};
 
@@ -23,15 +24,15 @@ pub enum Origin {
     Derived,
 }
 
-/// A file in memory.
+/// A file in memory, shared by all documents that are read from it.
 #[derive(Debug, Clone)]
 pub(crate) struct SourceText {
     /// As given; for messages.
-    pub(crate) file: String,
+    pub(crate) file: Arc<str>,
     /// All of it.
-    pub(crate) text: String,
+    pub(crate) text: Arc<str>,
     /// Byte at which each line starts.
-    lines: Vec<usize>,
+    lines: Arc<[usize]>,
 }
 
 const BOM: char = '\u{feff}';
@@ -40,7 +41,7 @@ impl SourceText {
     /// A file of this name and text.
     pub(crate) fn new(file: &str, text: &str) -> Self {
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
-        Self { file: file.to_owned(), text: text.to_owned(), lines }
+        Self { file: file.into(), text: text.into(), lines }
     }
 
     /// Line of a byte, from 0.

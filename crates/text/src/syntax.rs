@@ -56,7 +56,7 @@ pub(crate) fn read(schema: &Schema, source: &SourceText) -> Parsed {
     // At a key without value the parser gives up on the rest of the file: blank such lines and
     // parse again. After an unclosed header the table of the keys is unknown: what follows is left
     // out.
-    let mut text = source.text.clone();
+    let mut text = source.text.to_string();
     let mut seen = BTreeSet::new();
     for round in 1.. {
         let (table, errors) = DeTable::parse_recoverable(&text);

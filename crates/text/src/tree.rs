@@ -113,9 +113,114 @@ impl TreeBuilder<'_> {
 
 /// The value of a text: parsed as TOML if possible, otherwise a string.
 pub(crate) fn lenient_value(text: &str, origin: Origin) -> Node {
+    if let Some(raw) = plain(text) {
+        return Node { raw, origin, written: printable(text) };
+    }
+    parsed_leniently(text, origin)
+}
+
+/// A value whose TOML is what it looks like: every case of a study has dozens of them, derived and by
+/// default, for which the parser would take most of the time of reading a scene.
+fn plain(text: &str) -> Option<Raw> {
+    match text.as_bytes() {
+        b"true" => Some(Raw::Flag(true)),
+        b"false" => Some(Raw::Flag(false)),
+        [b'"', inner @ .., b'"'] => {
+            let literal = inner.iter().all(|byte| matches!(byte, b' '..=b'~') && !matches!(byte, b'"' | b'\\'));
+            literal.then(|| Raw::Text(text[1..text.len() - 1].to_owned()))
+        }
+        digits => {
+            let digits = digits.strip_prefix(b"-").unwrap_or(digits);
+            let (whole, fraction) = match digits.iter().position(|byte| *byte == b'.') {
+                Some(point) => (&digits[..point], Some(&digits[point + 1..])),
+                None => (digits, None),
+            };
+            let number = |part: &[u8]| !part.is_empty() && part.iter().all(u8::is_ascii_digit);
+            let leading_zero = whole.len() > 1 && whole[0] == b'0';
+            match fraction {
+                _ if !number(whole) || leading_zero => None,
+                Some(fraction) => number(fraction).then(|| text.parse().ok().map(Raw::Float))?,
+                None => Some(Raw::Integer(text.parse().ok())),
+            }
+        }
+    }
+}
+
+fn parsed_leniently(text: &str, origin: Origin) -> Node {
     let source = SourceText::new("", text);
     match DeValue::parse(text) {
         Ok(value) => TreeBuilder { source: &source, origin: Some(origin) }.node(&value),
         Err(_) => Node { raw: Raw::Text(text.to_owned()), origin, written: printable(&format!("\"{text}\"")) },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plain_values_are_those_of_the_parser() {
+        let mut texts: Vec<String> = [
+            "true",
+            "false",
+            "True",
+            "\"\"",
+            "\"50 us\"",
+            "\"a\\n\"",
+            "\"a\"b\"",
+            "\"",
+            "\"\"\"",
+            "\"\"\"\"",
+            "\"\"\"\"\"\"",
+            "\"ü\"",
+            "\"a\tb\"",
+            "\"a\u{7f}\"",
+            "'a'",
+            "0",
+            "-0",
+            "00",
+            "-01",
+            "12",
+            "+3",
+            "1_000",
+            "99999999999999999999",
+            "-9223372036854775808",
+            "0.5",
+            "-0.0",
+            "-0.5",
+            ".5",
+            "5.",
+            "00.5",
+            "1.5e3",
+            "1e5",
+            "-",
+            "",
+            ".",
+            "-.",
+            "inf",
+            "nan",
+            "0x1f",
+            "50 us",
+            " 1",
+            "1 ",
+            "1.2.3",
+            "[1, 2]",
+            "2020-01-01",
+            "1979-05-27T07:32:00Z",
+            "12:30:00",
+            "123456789.123456789",
+            "0.1",
+            "1.7976931348623157",
+        ]
+        .map(str::to_owned)
+        .into();
+        texts.push(format!("\"{}\"", "x".repeat(300)));
+        for text in texts {
+            let [fast, whole] =
+                [lenient_value, parsed_leniently].map(|read| format!("{:?}", read(&text, Origin::Default)));
+            assert_eq!(fast, whole, "{text:?}");
+        }
+        // And they do take the short way.
+        assert!(["true", "\"50 us\"", "0.5", "-12"].iter().all(|text| plain(text).is_some()));
     }
 }

@@ -93,6 +93,15 @@ friction = 0.5
 const RAIL_0: &str = "at = \"0 cm\"\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], angular_velocity = \"0 rad/s\" }";
 const RAIL_1: &str = "at = \"1 cm\"\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], angular_velocity = \"0 rad/s\" }";
 
+/// The lower block of the stack, held or led, and a push to the right on it.
+const LOWER: &str = "on = \"ground\"\nat = \"0 cm\"";
+const HELD: &str = "position = [\"0 cm\", \"5 cm\"]\nfixed = true";
+const LED: &str =
+    "position = [\"0 cm\", \"5 cm\"]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], angular_velocity = \"0 rad/s\" }";
+const SPIKE: &str =
+    "[ground]\nprofile = { points = [[\"-1 cm\", \"0 cm\"], [\"0 cm\", \"9 cm\"], [\"1 cm\", \"0 cm\"]] }";
+const PUSH: &str = "[force.push]\non = \"lower\"\nforce = [\"5 N\", \"0 N\"]\n[contact.joint]";
+
 /// Stones in rows, of which any two can touch.
 pub(crate) const PILE: &str = "\
 [time]
@@ -270,7 +279,7 @@ fn histories() -> Vec<Row> {
         refused(45, "record whose times go back", Record(Some("t,a\n0,0\n0.2,1\n0.1,1\n0.5,0\n")), &["signal.quake.file", "line 4", "0.1 s is not later than 0.2 s"]),
         refused(45, "record with one row", Record(Some("0,1\n")), &["signal.quake.file", "1 row of numbers", "two or more"]),
         refused(45, "record with a word", Record(Some("0,1\n1,high\n")), &["line 2", "`high` is not a number"]),
-        refused(45, "record by semicolons", Record(Some("t;a\n0;1\n1;2\n")), &["line 2", "1 column", "separated by a comma"]),
+        refused(45, "record by commas and semicolons", Record(Some("t,a\n0,1\n1;2\n")), &["line 3", "1 column", "separated by a semicolon"]),
         warned(46, "record shorter than the run", Record(Some("0,0\n0.1,2\n")), &["warning: signal.quake.file", "ends at 0.1 s", "the run at 0.5 s", "last value, 2, is kept"]),
         refused(38, "signal that is not defined", Edit(&[("[contact.feet]", "[ground]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], signal = \"quake\" }\n[contact.feet]")]), &["ground.motion.signal = \"quake\"", "not defined", "[signal.quake]"]),
         refused(38, "two motions in one", Edit(&[("[contact.feet]", "[ground]\nmotion = { velocity = [\"1 m/s\", \"0 m/s\"], displacement = [\"1 m\", \"0 m\"] }\n[contact.feet]")]), &["ground.motion", "prescribe the same motion"]),
@@ -347,6 +356,10 @@ fn beams() -> Vec<Row> {
         refused(8, "stop misspelt", Set(&["time.stop=['overturn']"]), &["time.stop", "overturned", "rest", "sunk"]),
         refused(8, "stop without brackets", Set(&["time.stop=overturned"]), &["time.stop", "array"]),
         refused(8, "stop twice", Set(&["time.stop=['rest', 'rest']"]), &["time.stop"]),
+        warned(54, "force on a fixed block", Stack(&[(LOWER, HELD), ("\"lower\", \"ground\"", "\"upper\", \"ground\""), ("[contact.joint]", PUSH)]), &["warning: force.push.on = \"lower\"", "no effect", "fixed"]),
+        warned(54, "force along a prescribed axis", Stack(&[(LOWER, LED), ("\"lower\", \"ground\"", "\"upper\", \"ground\""), ("[contact.joint]", PUSH)]), &["warning: force.push.on = \"lower\"", "no effect", "prescribed"]),
+        refused(54, "crest deep inside a block", Stack(&[("[ground]", SPIKE), (LOWER, "position = [\"0 cm\", \"5 cm\"]")]), &["block.lower.position", "crest-2", "inside the block"]),
+        refused(54, "disc on a sloping beam in equilibrium", Edit(&[("width    = \"3 cm\"\nheight   = \"13.5 cm\"", "radius = \"3 cm\""), (PLACE, "on = \"table\"\nat = \"9 cm\"")]), &["block.rocker.at", "the block rolls", "level"]),
         warned(38, "thick beam without shear", Set(&["beam.table.thickness=4 cm"]), &["warning: beam.table.theory", "0.11 of the span", "timoshenko"]),
     ]
 }

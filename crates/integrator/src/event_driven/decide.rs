@@ -15,6 +15,9 @@ const NONE: f64 = 1e-8;
 /// A force or distance from the friction cone above this, in parts of its scale, still holds.
 const HOLDS: f64 = -1e-7;
 
+/// A normal acceleration is known to this part of what it consists of.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 impl EventDriven {
     /// Changes what the watched contacts do, after an event; whether a motion was found that goes on.
     pub(super) fn change_modes(
@@ -120,7 +123,9 @@ impl EventDriven {
             if !stage.add(model, &from.q, candidate, &WarmStart::default(), &Memory::default())? {
                 continue;
             }
-            fastest = stage.velocity(0, &self.smooth.a)?[0].abs().max(fastest);
+            // Bodies that fall beside each other have none, to rounding.
+            let rounding = ROUNDING * stage.speed(0, &self.smooth.a);
+            fastest = stage.velocity(0, &self.smooth.a)?[0].abs().max(rounding).max(fastest);
             let slow = still(stage.speed(0, &from.v), stage.speed(0, &self.smooth.a), instant);
             approaches |= stage.velocity(0, &from.v)?[0] < -slow;
         }

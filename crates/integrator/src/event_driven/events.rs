@@ -6,7 +6,7 @@ use super::runge_kutta::RungeKutta;
 use super::{EventDriven, FLOOR, Stop};
 use crate::moreau_jean_located::rate_at;
 use crate::{Account, Model, State, StepError, Workspace};
-use teeter_detect::ContactId;
+use teeter_detect::{Candidate, ContactId};
 
 /// An open contact at the start of a step of the method.
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +31,13 @@ const SLIDE: f64 = 1e-14;
 
 /// A quantity that begins so far beyond 0 can't be watched.
 const WRONG: f64 = 1e-6;
+
+/// Halvings of steps in a phase at whose end contacts are inside that had no gap at the start: a corner that
+/// comes from beside a side and into it at once is still so after them.
+const MOST_HALVINGS: u32 = 20;
+
+/// Searches for an event before the one that was found: one does, where corners follow each other.
+const MOST_EARLIER: usize = 20;
 
 /// An error that falls with less than this power of the step is rounding, unless it is more than so
 /// many tolerances: then something isn't smooth.
@@ -88,7 +95,7 @@ impl EventDriven {
         self.find_open(model, work)?;
         let (mut t, mut duration) = (from.t, 0.0);
         let (mut noise, mut noisy, mut flat) = (0.0_f64, f64::INFINITY, 0);
-        let (mut before, mut explored) = (None::<(f64, f64)>, false);
+        let (mut before, mut explored, mut halvings) = (None::<(f64, f64)>, false, 0);
         while self.substeps < Self::MOST_SUBSTEPS {
             self.substeps += 1;
             let rest = last - t;
@@ -141,8 +148,17 @@ impl EventDriven {
                 continue;
             }
             let mut stop = None;
-            if self.find_watches(model, t, h, work)? {
-                match self.locate_event(model, t, h, work)? {
+            let any = self.find_watches(model, t, h, work)?;
+            // Where another side faces a corner by the end, the contact that touched first isn't watched: it is
+            // where the step is shorter.
+            if halvings < MOST_HALVINGS && self.watched.iter().any(Watch::comes_from_beside) {
+                halvings += 1;
+                self.h = 0.5 * h;
+                work.counts.refused_attempts += 1;
+                continue;
+            }
+            if any {
+                match self.locate_first(model, t, h, work)? {
                     Some(tau) => (h, stop) = (tau, Some(Stop::Event)),
                     // Nothing that a shorter step would confirm.
                     None => {
@@ -296,22 +312,13 @@ impl EventDriven {
         let (nq, nv) = (model.size().q, model.size().v);
         let tolerance = self.located.tolerance(&self.y[..nq]);
         work.detect(model, &self.rk.end[..nq], 0.0)?;
-        for k in 0..work.candidates.len() {
-            let candidate = work.candidates[k];
-            if candidate.gap >= -tolerance || self.smooth.contacts.iter().any(|contact| contact.id == candidate.id) {
-                continue;
-            }
-            let at = self.open.binary_search_by_key(&candidate.id, |open| open.id);
-            // One that comes from beyond the end of its surface has no gap there.
-            let (start, rate) = at.map_or((f64::INFINITY, f64::NAN), |at| (self.open[at].gap, self.open[at].rate));
-            let level = start.min(0.0);
-            if candidate.gap < level - tolerance && !at.is_ok_and(|at| self.open[at].is_prescribed) {
-                let (q, v) = self.rk.end[..nq + nv].split_at(nq);
-                let end_rate = rate_at(&mut self.smooth.one, model, q, &candidate, v)?;
-                let start = Known { tau: 0.0, value: start - level, rate };
-                let end = Known { tau: h, value: candidate.gap - level, rate: end_rate };
-                self.watched.push(Watch::closing(candidate.id, level, [start, end], tolerance));
-            }
+        for candidate in &work.candidates {
+            let Some([start, rate, level]) = self.closes(candidate, tolerance) else { continue };
+            let (q, v) = self.rk.end[..nq + nv].split_at(nq);
+            let end_rate = rate_at(&mut self.smooth.one, model, q, candidate, v)?;
+            let start = Known { tau: 0.0, value: start - level, rate };
+            let end = Known { tau: h, value: candidate.gap - level, rate: end_rate };
+            self.watched.push(Watch::closing(candidate.id, level, [start, end], tolerance));
         }
         if !self.smooth.contacts.is_empty() {
             let (q, v) = self.rk.end[..nq + nv].split_at(nq);
@@ -334,5 +341,45 @@ impl EventDriven {
             }
         }
         Ok(!self.watched.is_empty())
+    }
+    /// Of a contact that was open at the start of the step and is inside its surface where the step ends: its gap (m)
+    /// and rate (m/s) at the start, and the gap at which it closes (m).
+    fn closes(&self, candidate: &Candidate<2>, tolerance: f64) -> Option<[f64; 3]> {
+        if candidate.gap >= -tolerance || self.smooth.contacts.iter().any(|contact| contact.id == candidate.id) {
+            return None;
+        }
+        let at = self.open.binary_search_by_key(&candidate.id, |open| open.id);
+        // One that comes from beyond the end of its surface has no gap there.
+        let (start, rate) = at.map_or((f64::INFINITY, f64::NAN), |at| (self.open[at].gap, self.open[at].rate));
+        let level = start.min(0.0);
+        let is_prescribed = at.is_ok_and(|at| self.open[at].is_prescribed);
+        (candidate.gap < level - tolerance && !is_prescribed).then_some([start, rate, level])
+    }
+
+    /// The time (s) of the first event within a step of `h` (s) from `t`, as [`Self::locate_event`] finds that of what
+    /// is watched. What is inside a surface at that time without being so at the end of the step, as a corner that
+    /// another one of its body has followed, came before it.
+    fn locate_first(
+        &mut self,
+        model: &Model<2>,
+        t: f64,
+        h: f64,
+        work: &mut Workspace<2>,
+    ) -> Result<Option<f64>, StepError> {
+        let nq = model.size().q;
+        let mut tau = self.locate_event(model, t, h, work)?;
+        for _ in 0..MOST_EARLIER {
+            let Some(later) = tau.filter(|tau| *tau > 0.0) else { break };
+            let tolerance = self.located.tolerance(&self.y[..nq]);
+            work.detect(model, &self.rk.end[..nq], 0.0)?;
+            let is_watched = |id| self.watched.iter().any(|watch| watch.id == id);
+            let is_missed = |c: &&Candidate<2>| !is_watched(c.id) && self.closes(c, tolerance).is_some();
+            if work.candidates.iter().find(is_missed).is_none() {
+                break;
+            }
+            self.find_watches(model, t, later, work)?;
+            tau = self.locate_event(model, t, later, work)?;
+        }
+        Ok(tau)
     }
 }

@@ -210,6 +210,11 @@ impl Watch {
         Self { between, level, ..Self::new(Kind::Closes, id, start.value, end.value, tolerance) }
     }
 
+    /// Whether it is a contact that had no gap at the start of the step.
+    pub(super) fn comes_from_beside(&self) -> bool {
+        self.kind == Kind::Closes && self.start == f64::INFINITY
+    }
+
     /// Whether its gap, above 0 at the start, is known there with its rate: then the cubic through what
     /// is known finds the zero in fewer trials.
     fn has_cubic(&self) -> bool {

@@ -8,7 +8,7 @@ use crate::{
 };
 use nalgebra::Matrix4;
 use teeter_contact::{Outcome, Residual, Status};
-use teeter_detect::{Candidate, Candidates, ContactId};
+use teeter_detect::{Candidates, ContactId};
 
 /// W at an instant: M⁻¹.
 pub(super) const MASSES: Weights = Weights { mass: 1.0, damping: 0.0, stiffness: 0.0 };
@@ -18,10 +18,6 @@ pub(super) const MASSES: Weights = Weights { mass: 1.0, damping: 0.0, stiffness:
 /// force (J); then the coordinates, for their mean.
 const WORKS: usize = 2;
 const OF_CONTACT: usize = 4;
-
-/// A row's derivative along the motion is taken over a time in which nothing moves or turns by more
-/// than this, m or rad: its error falls with the fourth power.
-const ALONG: f64 = 1e-3;
 
 /// Contacts that share friction are at its limit together, up to this part of their scale.
 const SHARED: f64 = 1e-6;
@@ -42,9 +38,9 @@ pub(super) struct Smooth {
     /// Of one contact, beside the stage.
     pub(super) one: ContactStage<2>,
     found: Candidates<2>,
-    probes: Candidates<2>,
+    pub(super) probes: Candidates<2>,
     /// Of those found, how far it is to the end of their surface, m.
-    rooms: Vec<f64>,
+    pub(super) rooms: Vec<f64>,
     /// Accelerations without contacts; then those with them.
     pub(super) a: Vec<f64>,
     /// Velocities, prescribed ones at their time.
@@ -52,7 +48,7 @@ pub(super) struct Smooth {
     load: Vec<f64>,
     force: Vec<f64>,
     product: Vec<f64>,
-    q_probe: Vec<f64>,
+    pub(super) q_probe: Vec<f64>,
     linear: Linear,
     /// Contact and component of each unknown of a system.
     unknowns: Vec<(usize, usize)>,
@@ -298,45 +294,6 @@ impl Smooth {
             }
         }
         Ok(())
-    }
-
-    /// J̇v. Of a corner on ground that stands still the frame does, too, and bodies know it; else it is
-    /// the difference of J v along the motion.
-    pub(super) fn turning(
-        &mut self,
-        model: &Model<2>,
-        q: &[f64],
-        work: &mut Workspace<2>,
-        row: usize,
-        candidate: &Candidate<2>,
-    ) -> Result<Vector<2>, StepError> {
-        let t = self.between[0];
-        let is_still = model.owner(candidate.sides[1].body).is_some_and(|(_, part, _)| part.row == 0);
-        if is_still && model.detector().keeps_point(candidate.id) {
-            return self.stage.bias_at(row, model, q, &self.v).map_err(|source| StepError::Problem { t, source });
-        }
-        let mut fastest = 0.0_f64;
-        for side in &candidate.sides {
-            if let Some((_, part, _)) = model.owner(side.body) {
-                fastest = self.v[part.v.clone()].iter().fold(fastest, |fastest, v| fastest.max(v.abs()));
-            }
-        }
-        if fastest == 0.0 {
-            return Ok(Vector::zeros());
-        }
-        let h = (ALONG / fastest).min(1e6);
-        let mut sum = Vector::zeros();
-        for (shift, share) in [(h, 8.0), (-h, -8.0), (2.0 * h, -1.0), (-2.0 * h, 1.0)] {
-            model.move_along(q, &self.v, shift, &mut self.q_probe);
-            work.locate_past_ends(model, &self.q_probe, &[candidate.id], &mut self.probes, &mut self.rooms)?;
-            self.one.clear();
-            // Off the end of its surface.
-            let Some(probe) = self.probes.first() else { return Ok(Vector::zeros()) };
-            if self.one.add(model, &self.q_probe, probe, &WarmStart::default(), &Memory::default())? {
-                sum += self.one.velocity(0, &self.v)? * share;
-            }
-        }
-        Ok(sum / (12.0 * h))
     }
 
     /// Finds the forces that keep every contact in its mode.

@@ -7,7 +7,7 @@
 use super::outline::Outline;
 use super::recorder::BLOCK_FRAME;
 use super::scenery::Scenery;
-use crate::Schedule;
+use crate::{Results, ResultsError, Schedule};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::ops::ControlFlow;
@@ -31,6 +31,11 @@ fn picture_name(number: usize) -> String {
     format!("picture-{number:04}.vtu")
 }
 
+/// Its path in the folder of the results.
+fn picture_path(number: usize) -> String {
+    format!("vtk/{}", picture_name(number))
+}
+
 /// Whether a file of that name is a picture of a series.
 pub(crate) fn is_vtk_picture(name: &str) -> bool {
     let number = name.strip_prefix("picture-").and_then(|rest| rest.strip_suffix(".vtu"));
@@ -47,16 +52,19 @@ struct Acted {
     impulse: [f64; 2],
 }
 
-/// Watches a run and keeps its pictures as VTK files.
+/// Watches a run and writes its pictures as VTK files, each as it is taken: of thousands of blocks they
+/// would fill the memory.
 #[derive(Debug)]
-pub struct VtkRecorder {
+pub struct VtkRecorder<'r> {
+    results: &'r Results,
     scenery: Scenery,
     layout: Layout,
     schedule: Schedule,
     acted: BTreeMap<ContactId, Acted>,
     /// Time of the last picture, s.
     last: f64,
-    pictures: Vec<(f64, String)>,
+    /// Times of the pictures, s.
+    times: Vec<f64>,
 }
 
 /// The kinds of cells, and their numbers in VTK.
@@ -73,35 +81,41 @@ struct Picture {
     cells: Vec<Cell>,
 }
 
-impl VtkRecorder {
-    /// A recorder for a run of `scene`, with pictures `every` so many seconds; none: 200 of them.
+impl<'r> VtkRecorder<'r> {
+    /// A recorder for a run of `scene`, with pictures `every` so many seconds; none: 200 of them. They
+    /// go to the subfolder `vtk` of `results`.
     #[must_use]
-    pub fn new(scene: &Scene, layout: &Layout, every: Option<f64>) -> Self {
+    pub fn new(results: &'r Results, scene: &Scene, layout: &Layout, every: Option<f64>) -> Self {
         let (end, steps) = (scene.time.end, scene.time.steps());
         let every = every.unwrap_or(end / PICTURES).max(end / MOST_PICTURES);
         Self {
+            results,
             scenery: Scenery::new(scene, layout),
             layout: layout.clone(),
             schedule: Schedule::new(Some(every), steps, scene.time.step),
             acted: BTreeMap::new(),
             last: 0.0,
-            pictures: Vec::new(),
+            times: Vec::new(),
         }
     }
 
-    /// The files: names relative to the folder of the results, and contents; the series last.
-    #[must_use]
-    pub fn files(&self) -> Vec<(String, String)> {
+    /// Writes the list of the pictures with their times, and removes pictures of an interrupted run that
+    /// this one, which resumed it, didn't replace.
+    ///
+    /// # Errors
+    /// If a file can't be written or removed.
+    pub fn finish(&self) -> Result<(), ResultsError> {
+        let left_over = |number: &usize| self.results.folder().join(picture_path(*number)).exists();
+        for number in (self.times.len()..).take_while(left_over) {
+            self.results.remove(&picture_path(number))?;
+        }
         let mut series = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n".to_owned();
-        let mut files = Vec::new();
-        for (number, (t, text)) in self.pictures.iter().enumerate() {
+        for (number, t) in self.times.iter().enumerate() {
             let name = picture_name(number);
             let _ = writeln!(series, "<DataSet timestep=\"{t:?}\" part=\"0\" file=\"{name}\"/>");
-            files.push((format!("vtk/{name}"), text.clone()));
         }
         series.push_str("</Collection>\n</VTKFile>\n");
-        files.push((VTK_SERIES.to_owned(), series));
-        files
+        self.results.write(VTK_SERIES, series)
     }
 
     fn add(&mut self, contact: &Contact<2>) {
@@ -114,7 +128,7 @@ impl VtkRecorder {
         (0..2).for_each(|k| acted.impulse[k] += impulse[k]);
     }
 
-    fn take(&mut self, state: &State) {
+    fn take(&mut self, state: &State) -> Result<(), ResultsError> {
         let mut picture = Picture::default();
         for (number, (block, drawn)) in self.layout.blocks.iter().zip(&self.scenery.blocks).enumerate() {
             let mut pose = [0.0; BLOCK_FRAME];
@@ -150,7 +164,9 @@ impl VtkRecorder {
         }
         self.acted.clear();
         self.last = state.t;
-        self.pictures.push((state.t, picture.to_xml()));
+        let path = picture_path(self.times.len());
+        self.times.push(state.t);
+        self.results.write(&path, picture.to_xml())
     }
 }
 
@@ -206,12 +222,11 @@ impl Picture {
     }
 }
 
-impl Observer<2> for VtkRecorder {
+impl Observer<2> for VtkRecorder<'_> {
     fn start(&mut self, _: &Model<2>, state: &State) -> Result<(), ObserverError> {
         self.schedule.takes(state.step, state.t);
         self.last = state.t;
-        self.take(state);
-        Ok(())
+        Ok(self.take(state)?)
     }
 
     fn observe(
@@ -224,7 +239,7 @@ impl Observer<2> for VtkRecorder {
             self.add(contact);
         }
         if self.schedule.takes(state.step, state.t) {
-            self.take(state);
+            self.take(state)?;
         }
         Ok(ControlFlow::Continue(()))
     }

@@ -151,16 +151,14 @@ fn all(verdict: &[BodyVerdict]) -> String {
         .filter(|of| of.what == Fate::Moves || (of.what == Fate::Slid && of.rests_from.is_none()))
         .collect();
     tell(&moving, if moving.len() == 1 { "still moves" } else { "still move" }, "");
-    let largest = verdict
-        .iter()
-        .filter(|of| of.what != Fate::Overturned)
-        .filter_map(|of| of.max_phi_over_alpha)
-        .fold(0.0, f64::max);
+    let others = || verdict.iter().filter(|of| of.what != Fate::Overturned).map(|of| of.max_phi_over_alpha);
+    let largest = others().flatten().fold(0.0, f64::max);
+    let of_all = parts.len() == 1 && others().all(|part| part.is_some());
     let mut text = parts.join("; ");
     if largest >= super::ROCKED {
         text.push_str(&format!(
             "; largest φ/α of {} {}",
-            if parts.len() > 1 { "those that stand" } else { "all" },
+            if of_all { "all" } else { "those that stand" },
             digits(largest)
         ));
     }

@@ -42,7 +42,7 @@ pub(crate) struct Edge {
     pub(crate) arm: f64,
 }
 
-/// How a block stands at the start.
+/// How a block stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stance {
     /// Where it stands flat on level ground, rad.
@@ -69,7 +69,7 @@ pub(crate) struct Outline {
     /// Largest distance of a point of it from the mass centre, m.
     size: f64,
     /// Direction of gravity, rad.
-    gamma: f64,
+    pub(super) gamma: f64,
 }
 
 impl Outline {

@@ -144,3 +144,81 @@ fn a_shaken_block_rocks_alike_in_steps_of_any_size() {
     assert!(short.state.q[2].abs() > 0.01, "it doesn't rock: {} rad", short.state.q[2]);
     assert!(off < 1e-11, "{off:e} rad");
 }
+
+/// Falling beside each other, two blocks have no acceleration towards each other that could end a bounce.
+#[test]
+fn blocks_that_meet_in_flight_lose_nothing_by_an_elastic_blow() {
+    for angle in 1..40 {
+        let scene = format!(
+            "[time]\nend = '0.1 s'\nstep = '1 ms'\n[contact.c]\nbetween = ['*', '*']\nfriction = 0.0\nrestitution = 1.0\n\
+             [block.a]\ndensity = '1000 kg/m^3'\ndepth = '10 cm'\nwidth = '10 cm'\nheight = '30 cm'\n\
+             position = ['0 m', '0 m']\nangle = '{angle} deg'\nspin = '1 rad/s'\nvelocity = ['0 m/s', '5 m/s']\n\
+             [block.b]\ndensity = '700 kg/m^3'\ndepth = '10 cm'\nwidth = '10 cm'\nheight = '20 cm'\n\
+             position = ['3 cm', '50 cm']\nangle = '30 deg'\nvelocity = ['0 m/s', '-1 m/s']\n"
+        );
+        let simulation = run(&scene, "1 ms");
+        let ledger = &simulation.state.ledger;
+        let lost = ledger.sum.contact.abs() / ledger.initial.kinetic;
+        assert!(simulation.state.v[2] != 1.0, "they meet");
+        assert!(lost < 1e-13, "{angle}°: {lost:e} of the energy is lost");
+    }
+}
+
+/// A corner of the rounded block is inside the other for a part of the step only: then another has followed it.
+#[test]
+fn the_first_touch_of_a_step_is_the_event_though_another_corner_is_inside_at_its_end() {
+    let scene = "[time]\nend = '4 ms'\nstep = '1 ms'\n\
+         [contact.c]\nbetween = ['*', '*']\nfriction = 0\nrestitution = 0.8\nlaw = 'energetic'\n\
+         [block.b1]\ndensity = '983 kg/m^3'\ndepth = '0.1 m'\n\
+         shape = { kind = 'stadium', radius = '42.575371556 mm', length = '141.9179051877 mm' }\n\
+         position = ['-0.014791970045 m', '0.1315638358028 m']\nangle = '0.7386129795808999 rad'\n\
+         velocity = ['-1.7083828688 m/s', '0.1866630303 m/s']\nspin = '-33.6764287 rad/s'\n\
+         [block.b2]\ndensity = '2959.23 kg/m^3'\ndepth = '0.1 m'\n\
+         width = '0.15175084895505445 m'\nheight = '0.061499566286896276 m'\nchamfer = '2.1006349018146606 mm'\n\
+         position = ['0.14194592814148 m', '0.1610055845049 m']\nangle = '0.8137280723633928 rad'\n\
+         velocity = ['-0.70192918756 m/s', '2.2618446902363 m/s']\nspin = '-42.96405127 rad/s'\n";
+    let short = run(scene, "20 us").state;
+    for step in ["500 us", "1 ms", "2 ms", "4 ms"] {
+        let state = run(scene, step).state;
+        for (v, exact) in state.v.iter().zip(&short.v) {
+            assert!((v - exact).abs() < 1e-9, "{step}: {v} instead of {exact}");
+        }
+    }
+}
+
+/// Its underside is flat up to where the edge of the other begins to round: there J̇v jumps.
+#[test]
+fn a_block_slides_over_a_rounded_edge_and_off_it() {
+    let scene = "[time]\nend = '0.45 s'\nstep = '1 ms'\n[contact.c]\nbetween = ['*', '*']\nfriction = 0.2\nrestitution = 0.0\n\
+         [block.table]\nfixed = true\ndensity = '1000 kg/m^3'\ndepth = '10 cm'\nwidth = '40 cm'\nheight = '10 cm'\n\
+         rounding = '3 mm'\nposition = ['0 m', '0 m']\n\
+         [block.b]\ndensity = '1000 kg/m^3'\ndepth = '10 cm'\nwidth = '20 cm'\nheight = '6 cm'\nrounding = '2 mm'\n\
+         position = ['5 cm', '8 cm']\nvelocity = ['1.5 m/s', '0 m/s']\n";
+    let short = run(scene, "100 us").state;
+    assert!(short.q[5].abs() > 0.3, "it tips: {:?}", short.q);
+    for step in ["1 ms", "10 ms"] {
+        let state = run(scene, step).state;
+        for (q, other) in state.q.iter().zip(&short.q) {
+            assert!((q - other).abs() < 1e-8, "{step}: {:?} and {:?}", state.q, short.q);
+        }
+    }
+}
+
+/// A wheel of twelve sides meets the last point of a profile, on which it turns: what lies past it is not there to take
+/// differences over.
+#[test]
+fn a_block_turns_on_the_last_point_of_a_profile() {
+    let scene = "[time]\nend = '0.1 s'\nstep = '1 ms'\n\
+         [ground]\nprofile = { points = [['-60 cm', '0 cm'], ['-20 cm', '25 cm']] }\n\
+         [contact.c]\nbetween = ['*', '*']\nfriction = 1.0\nrestitution = 0.0\n\
+         [block.b]\ndensity = '1000 kg/m^3'\ndepth = '10 cm'\nshape = { kind = 'regular', sides = 12, radius = '5 cm' }\n\
+         position = ['-19.7 cm', '30.2 cm']\nangle = '-2 deg'\nvelocity = ['-1 m/s', '-0.3 m/s']\nspin = '20 rad/s'\n";
+    let short = run(scene, "100 us").state;
+    assert!((short.v[2] - 20.0).abs() > 0.01, "it meets the point: {:?}", short.v);
+    for step in ["1 ms", "10 ms"] {
+        let state = run(scene, step).state;
+        for (v, other) in state.v.iter().zip(&short.v) {
+            assert!((v - other).abs() < 1e-8, "{step}: {:?} and {:?}", state.v, short.v);
+        }
+    }
+}

@@ -278,3 +278,31 @@ fn a_static_start_beside_a_profile_is_refused_also_through_blocks() {
     let message = load(text.as_bytes(), "s", "s", &[]).expect_err("b also touches the ground").to_string();
     assert!(message.contains("beam.t.start") && message.contains("also touches the profile"), "{message}");
 }
+
+#[test]
+fn a_crest_that_starts_inside_a_block_is_refused_however_deep() {
+    // A spike under the middle of a block of 20 cm × 10 cm on level ground, in one piece or in two, one on the other.
+    let build = |height: &str, shape: &str| {
+        let text = format!(
+            "[time]\nend = '1 s'\nstep = '1 ms'\n\
+             [ground]\nprofile = {{ points = [['-1 m', '0 m'], ['-2 cm', '0 m'], ['0 m', '{height}'], ['2 cm', '0 m'], ['1 m', '0 m']] }}\n\
+             [material.a]\ndensity = '2000 kg/m^3'\n[block.b]\nmaterial = 'a'\ndepth = '10 cm'\nposition = ['0 m', '5 cm']\n{shape}\n\
+             [contact.f]\nbetween = ['b', 'ground']\nfriction = 0.5\n"
+        );
+        let scene =
+            teeter_scenario::load(text.as_bytes(), "f", "f", &[]).unwrap_or_else(|errors| panic!("{errors}")).scene;
+        teeter_scenario::simulation::Simulation::new(&scene).map(|_| ())
+    };
+    let whole = "width = '20 cm'\nheight = '10 cm'";
+    let layers = "parts = [{ points = [['-10 cm', '0 cm'], ['10 cm', '0 cm'], ['10 cm', '4 cm'], ['-10 cm', '4 cm']] }, \
+                  { points = [['-10 cm', '4 cm'], ['10 cm', '4 cm'], ['10 cm', '10 cm'], ['-10 cm', '10 cm']] }]";
+    for shape in [whole, layers] {
+        for height in ["1 um", "1 cm", "3 cm", "4 cm", "5.1 cm", "9.9 cm", "10 cm"] {
+            let refused = build(height, shape).expect_err(height).to_string();
+            assert!(refused.contains("crest-3"), "{refused}");
+        }
+        for height in ["0.1 nm", "-1 um", "-3 cm"] {
+            build(height, shape).unwrap_or_else(|error| panic!("{height}: {error}"));
+        }
+    }
+}

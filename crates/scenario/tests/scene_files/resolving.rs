@@ -158,6 +158,32 @@ fn a_tilt_beyond_the_critical_angle_is_a_warning_that_names_it() {
 }
 
 #[test]
+fn the_critical_angle_is_that_of_the_side_on_which_a_block_lies() {
+    let warnings = |angle: &str| {
+        let text = format!(
+            "[time]\nend = '1 s'\nstep = '1 ms'\n[ground]\n[material.a]\ndensity = '2700 kg/m^3'\n[block.b]\nmaterial = 'a'\n\
+             width = '3 cm'\nheight = '13 cm'\ndepth = '3 cm'\nposition = ['0 m', '20 cm']\nangle = '{angle}'\n\
+             [contact.floor]\nbetween = ['b', 'ground']\nfriction = 0.5\n"
+        );
+        let found = teeter_scenario::load(text.as_bytes(), "f", "f", &[]).unwrap().warnings;
+        found.iter().map(ToString::to_string).filter(|text| text.contains("critical angle")).collect::<Vec<_>>()
+    };
+    for angle in ["0 deg", "12 deg", "90 deg", "-90 deg", "60 deg", "-50 deg"] {
+        assert!(warnings(angle).is_empty(), "{angle}: {:?}", warnings(angle));
+    }
+    for (angle, named) in [("14 deg", "atan(width/height) = 12.99 deg"), ("-30 deg", "12.99")] {
+        let [found] = &warnings(angle)[..] else { panic!("{angle}") };
+        says(found, &["block.b.angle", named, "overturns"]);
+    }
+    // A wide one on its narrow side.
+    let text = "[time]\nend = '1 s'\nstep = '1 ms'\n[ground]\n[material.a]\ndensity = '2700 kg/m^3'\n[block.b]\nmaterial = 'a'\n\
+         width = '13 cm'\nheight = '3 cm'\ndepth = '3 cm'\nposition = ['0 m', '20 cm']\nangle = '70 deg'\n\
+         [contact.floor]\nbetween = ['b', 'ground']\nfriction = 0.5\n";
+    let found = teeter_scenario::load(text.as_bytes(), "f", "f", &[]).unwrap().warnings;
+    says(&found[0].to_string(), &["atan(height/width) = 12.99 deg of this block, which lies on its side", "overturns"]);
+}
+
+#[test]
 fn the_gap_tolerance_follows_the_largest_block() {
     let of = |size: &str| {
         let (resolved, _) = set(&[("block.rocker.height", size), ("beam.table.start", "undeformed")]).unwrap();

@@ -1,6 +1,7 @@
 //! Finds the time shift and the side from which a motion was seen.
 
 use super::MotionTrace;
+use super::correlate::candidates;
 use crate::measured::{Channel, Measured, MeasuredMotion, Sign};
 
 /// What is known of the alignment; the rest is found.
@@ -28,10 +29,15 @@ pub struct Alignment {
     pub mismatch: f64,
 }
 
-/// Rows used in the search for a shift.
-const SEARCH_ROWS: usize = 1500;
-/// Most shifts tried before the best is refined.
-const MOST_SHIFTS: usize = 3000;
+/// Of the shifts that fit best on the grid, so many are judged by all rows. Where a motion hardly
+/// changes from period to period, the rounding of times to the grid may change their order.
+const CANDIDATES: usize = 5;
+/// To what share of the grid's distance each of them is refined, to be compared.
+const ROUGH: f64 = 0.01;
+/// And the best: 50 sections.
+pub(crate) const FINE: f64 = 3.6e-11;
+/// Fewest rows that can be aligned.
+const FEWEST_ROWS: usize = 4;
 /// At least this share of the shorter motion has to be compared.
 const OVERLAP: f64 = 0.5;
 
@@ -52,10 +58,10 @@ pub fn align(
     for sign in signs {
         let mut motion = measured.motion(sign);
         set_zero(&mut motion, sign.factor() * offset, start);
-        let search = Search::new(&motion, trace, end, SEARCH_ROWS);
+        let search = Search::new(&motion, trace, end);
         let (shift, mismatch) = match settings.shift {
             Some(shift) => (shift, search.mismatch(shift).unwrap_or(f64::INFINITY)),
-            None => search.best(MOST_SHIFTS),
+            None => search.best(),
         };
         // Of an exact tie, the side as it is.
         if best.as_ref().is_none_or(|(found, _)| mismatch < found.mismatch) {
@@ -75,44 +81,68 @@ pub(crate) fn set_zero(motion: &mut MeasuredMotion, offset: f64, start: f64) {
     }
 }
 
+/// What part of a run counts for an alignment, and how much of it there has to be.
+pub(super) struct Window {
+    /// From when on the run has a motion, s: minus infinity if the block was held before.
+    pub(super) begin: f64,
+    /// Until when, s.
+    pub(super) end: f64,
+    /// Whether the mean difference doesn't count.
+    pub(super) centred: bool,
+    /// Fewest rows between the start of the run and its end.
+    fewest: usize,
+}
+
+impl Window {
+    pub(super) fn enough(&self, moving: usize) -> bool {
+        moving >= self.fewest
+    }
+}
+
 /// The search for a shift.
 struct Search<'a> {
     trace: &'a MotionTrace,
     channel: Channel,
-    /// Times and values of the rows that are looked at.
+    /// Times and values of the rows.
     rows: Vec<(f64, f64)>,
-    end: f64,
+    /// The median time between them, s.
+    interval: f64,
+    window: Window,
 }
 
 impl<'a> Search<'a> {
-    fn new(motion: &MeasuredMotion, trace: &'a MotionTrace, end: f64, most_rows: usize) -> Self {
+    fn new(motion: &MeasuredMotion, trace: &'a MotionTrace, end: f64) -> Self {
         let channel = motion.leading();
         let values = motion.values(channel).unwrap_or_default();
-        let present: Vec<(f64, f64)> =
+        let rows: Vec<(f64, f64)> =
             motion.t.iter().copied().zip(values.iter().copied()).filter(|(_, value)| value.is_finite()).collect();
-        let every = present.len().div_ceil(most_rows).max(1);
-        Self { trace, channel, rows: present.into_iter().step_by(every).collect(), end }
+        let length = rows.last().map_or(0.0, |last| last.0) - rows.first().map_or(0.0, |first| first.0);
+        let spacing = length / (rows.len() as f64 - 1.0).max(1.0);
+        let least = (OVERLAP * length.min(end) / spacing).ceil() + 1.0;
+        let window = Window {
+            begin: if trace.is_held() { f64::NEG_INFINITY } else { 0.0 },
+            end,
+            centred: channel.has_own_origin(),
+            fewest: if least.is_finite() { (least as usize).max(FEWEST_ROWS) } else { usize::MAX },
+        };
+        Self { trace, channel, rows, interval: motion.interval(), window }
     }
 
     /// Mean square difference with a shift, relative to the mean squares of both; `None` if too
     /// little of them is at the same time.
     fn mismatch(&self, shift: f64) -> Option<f64> {
-        let begin = if self.trace.is_held() { f64::NEG_INFINITY } else { 0.0 };
-        let inside = |t: f64| t + shift >= begin && t + shift <= self.end;
-        let pairs: Vec<(f64, f64)> = self
-            .rows
-            .iter()
-            .filter(|(t, _)| inside(*t))
-            .filter_map(|(t, value)| Some((*value, self.trace.at(t + shift)?.of(self.channel))))
-            .collect();
-        let moving = self.rows.iter().filter(|(t, _)| t + shift >= 0.0 && t + shift <= self.end).count();
-        let spacing = (self.rows.last()?.0 - self.rows.first()?.0) / (self.rows.len() as f64 - 1.0).max(1.0);
-        let shorter = (self.rows.last()?.0 - self.rows.first()?.0).min(self.end);
-        if (moving as f64 - 1.0) * spacing < OVERLAP * shorter || moving < 4 {
+        let Window { begin, end, centred, .. } = self.window;
+        let from = |time: f64| self.rows.partition_point(|(t, _)| t + shift < time);
+        let (first, moving, after) = (from(begin), from(0.0), self.rows.partition_point(|(t, _)| t + shift <= end));
+        if !self.window.enough(after.saturating_sub(moving)) {
             return None;
         }
+        let mut hint = 0;
+        let pairs: Vec<(f64, f64)> = self.rows[first..after]
+            .iter()
+            .filter_map(|(t, value)| Some((*value, self.trace.at_near(t + shift, &mut hint)?.of(self.channel))))
+            .collect();
         let mean = |pick: fn(&(f64, f64)) -> f64| pairs.iter().map(pick).sum::<f64>() / pairs.len() as f64;
-        let centred = self.channel.has_own_origin();
         let (a, b) = if centred { (mean(|p| p.0), mean(|p| p.1)) } else { (0.0, 0.0) };
         let (mut off, mut all) = (0.0, 0.0);
         for (x, y) in &pairs {
@@ -123,36 +153,34 @@ impl<'a> Search<'a> {
         (all > 0.0).then_some(off / all)
     }
 
-    /// The best shift and its mismatch, of at most so many shifts that are tried first.
-    fn best(&self, most: usize) -> (f64, f64) {
-        let (Some(first), Some(last)) = (self.rows.first(), self.rows.last()) else { return (0.0, f64::INFINITY) };
-        let (low, high) = (-last.0, self.end - first.0);
-        let spacing = (last.0 - first.0) / (self.rows.len() as f64 - 1.0).max(1.0);
-        let count = (((high - low) / spacing.max(1e-12)) as usize).clamp(2, most);
-        let step = (high - low) / count as f64;
-        let tried = (0..=count).filter_map(|k| {
-            let shift = low + step * k as f64;
-            Some((shift, self.mismatch(shift)?))
-        });
-        let Some((coarse, _)) = tried.min_by(|a, b| a.1.total_cmp(&b.1)) else { return (0.0, f64::INFINITY) };
-        let shift = golden(coarse - step, coarse + step, |shift| self.mismatch(shift).unwrap_or(f64::INFINITY));
-        (shift, self.mismatch(shift).unwrap_or(f64::INFINITY))
+    /// The best shift and its mismatch: of the best of all shifts on a grid each is refined.
+    fn best(&self) -> (f64, f64) {
+        let simulated =
+            |t: f64, hint: &mut usize| self.trace.at_near(t, hint).map_or(0.0, |motion| motion.of(self.channel));
+        let (found, reach) = candidates(&self.rows, self.interval, &self.window, simulated);
+        let refined = |near: f64, reach: f64, share: f64| {
+            let of = |shift| self.mismatch(shift).unwrap_or(f64::INFINITY);
+            let shift = golden(near - reach, near + reach, share, of);
+            (shift, of(shift))
+        };
+        let rough = found.iter().take(CANDIDATES).map(|found| refined(found.shift, reach, ROUGH));
+        let Some((shift, _)) = rough.min_by(|a, b| a.1.total_cmp(&b.1)) else { return (0.0, f64::INFINITY) };
+        refined(shift, 4.0 * ROUGH * reach, FINE)
     }
 }
 
-/// The time shift (s) that aligns a motion with a run, and the mismatch that is left, by a search with
-/// fewer rows and shifts than [`align`]: for many runs.
+/// The time shift (s) that aligns a motion with a run, and the mismatch that is left.
 pub(crate) fn mismatch_and_shift(motion: &MeasuredMotion, trace: &MotionTrace, end: f64) -> (f64, f64) {
-    Search::new(motion, trace, end, 300).best(400)
+    Search::new(motion, trace, end).best()
 }
 
-/// The minimum of a function between two points by golden sections.
-pub(crate) fn golden(mut low: f64, mut high: f64, mut of: impl FnMut(f64) -> f64) -> f64 {
+/// The minimum of a function between two points by golden sections, to this share of their distance.
+pub(crate) fn golden(mut low: f64, mut high: f64, to: f64, mut of: impl FnMut(f64) -> f64) -> f64 {
     let share = 0.5 * (5.0_f64.sqrt() - 1.0);
     let (mut a, mut b) = (high - share * (high - low), low + share * (high - low));
     let (mut at_a, mut at_b) = (of(a), of(b));
-    // 0.618^50 is 3e-11 of the interval.
-    for _ in 0..50 {
+    let sections = (to.ln() / share.ln()).ceil() as usize;
+    for _ in 0..sections {
         if at_a < at_b {
             (high, b, at_b) = (b, a, at_a);
             a = high - share * (high - low);
@@ -194,5 +222,44 @@ mod tests {
         let given = AlignmentSettings { shift: Some(-3.3), sign: Some(Sign::AsIs) };
         let (found, _) = align(&measured, &trace, 2.0, 0.0, given);
         assert!(found.shift == -3.3 && found.sign == Sign::AsIs && found.mismatch > 0.5);
+    }
+
+    /// A block that rocks 100 times in a minute and hardly loses energy: one period off, nearly
+    /// everything fits.
+    fn long_motion() -> (MotionTrace, impl Fn(f64) -> f64) {
+        // Half-sines between impacts, of which each keeps 0.995 of the speed.
+        let half = 0.3;
+        let place = move |t: f64| ((t / half).floor(), std::f64::consts::PI * (t / half).fract());
+        let size = |n: f64| 0.1 * 0.995_f64.powf(n) * if n % 2.0 == 0.0 { 1.0 } else { -1.0 };
+        let phi = move |t: f64| {
+            let (n, s) = place(t);
+            size(n) * s.sin()
+        };
+        let mut trace = MotionTrace::default();
+        for k in 0..=60_000 {
+            let t = 1e-3 * f64::from(k);
+            let (n, s) = place(t);
+            trace.push(t, [0.0, 0.0, phi(t)], [0.0, 0.0, size(n) * s.cos() * std::f64::consts::PI / half]);
+        }
+        (trace, phi)
+    }
+
+    #[test]
+    fn a_long_recording_is_not_aligned_a_period_off() {
+        let (trace, phi) = long_motion();
+        for (begin, rows) in [(0.0, 9900_u32), (0.25, 9800), (7.371, 8600), (29.99, 4900)] {
+            let frames = (0..rows).map(|k| {
+                let t = f64::from(k) / 165.0;
+                let noise = 1e-4 * f64::from((k * 7919) % 13) / 6.0;
+                format!("{t:?},{:?}\n", phi(begin + t) + noise)
+            });
+            let text = format!("t,phi\n{}", frames.collect::<String>());
+            let measured = Measured::read(text.as_bytes(), &ColumnLayout::default(), "b").unwrap();
+            let motion = measured.motion(Sign::AsIs);
+            let (shift, mismatch) = mismatch_and_shift(&motion, &trace, 60.0);
+            assert!((shift - begin).abs() < 2e-4 && mismatch < 1e-4, "from {begin} s: {shift} s, {mismatch}");
+            let (found, _) = align(&measured, &trace, 60.0, 0.0, AlignmentSettings::default());
+            assert!(found.sign == Sign::AsIs && (found.shift - begin).abs() < 2e-4, "from {begin} s: {found:?}");
+        }
     }
 }

@@ -2,13 +2,14 @@
 //! smoothing, compared as a whole, by half-cycles and by impacts.
 
 mod align;
+mod correlate;
 mod cycles;
 mod differences;
 mod trace;
 mod write;
 
 pub use align::{Alignment, AlignmentSettings, align};
-pub(crate) use align::{golden, mismatch_and_shift, set_zero};
+pub(crate) use align::{FINE, golden, mismatch_and_shift, set_zero};
 pub use cycles::{HalfCycle, HalfCyclePair, ImpactPair, Swing, pair_half_cycles, pair_impacts, swing};
 pub use differences::{ChannelComparison, Differences};
 pub(crate) use trace::Tracer;
@@ -141,5 +142,5 @@ pub(crate) fn sampled(trace: &MotionTrace, channel: Channel, t: &[f64], like: &[
 /// Samples of a rate that was measured itself.
 pub(crate) fn unsmoothed(value: Vec<f64>) -> LocalFit {
     let rate = vec![f64::NAN; value.len()];
-    LocalFit { value, rate, noise: 0.0 }
+    LocalFit { value, rate, noise: 0.0, window: 1 }
 }

@@ -137,6 +137,11 @@ impl MotionTrace {
     /// [is](Self::is_held), `None` after the end.
     #[must_use]
     pub fn at(&self, t: f64) -> Option<MotionAt> {
+        self.at_near(t, &mut 0)
+    }
+
+    /// As [`at`](Self::at); `hint` makes it faster for times that increase. It is 0 at first.
+    pub(crate) fn at_near(&self, t: f64, hint: &mut usize) -> Option<MotionAt> {
         let (first, last) = (self.rows.first()?, self.rows.last()?);
         if t <= self.t[0] {
             let held = (t == self.t[0] || self.is_held()).then_some(first);
@@ -146,7 +151,10 @@ impl MotionTrace {
             let rounding = 1e-9 * self.end();
             return (t <= self.end() + rounding).then_some(MotionAt { q: last.0, v: last.1 });
         }
-        let after = self.t.partition_point(|row| *row <= t);
+        let is_after = |row: usize| row > 0 && self.t[row - 1] <= t && self.t.get(row).is_some_and(|next| *next > t);
+        let after =
+            (*hint..*hint + 4).find(|row| is_after(*row)).unwrap_or_else(|| self.t.partition_point(|row| *row <= t));
+        *hint = after;
         let (t0, t1) = (self.t[after - 1], self.t[after]);
         let ((q0, v0), (q1, v1)) = (self.rows[after - 1], self.rows[after]);
         let h = t1 - t0;

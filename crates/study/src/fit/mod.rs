@@ -123,6 +123,8 @@ const STARTS: usize = 4;
 const EXTENSIONS: [(f64, f64); 4] = [(0.3, 4e-3), (0.55, 2e-3), (0.8, 1e-3), (1.0, 5e-4)];
 /// Size of the simplex in such distances.
 const SIMPLEX: f64 = 5.0;
+/// Most rounds, each up to the horizon of the values fitted in the one before.
+const ROUNDS: usize = 4;
 /// A horizon that moves by less than this share cuts nothing off.
 const SAME_HORIZON: f64 = 0.02;
 
@@ -165,7 +167,8 @@ impl Fit {
         let mut until = objective.until;
         let mut best: Vec<Trial> = starts;
         let mut horizon = until;
-        for round in 0..2 {
+        let (mut lengthened, mut turned) = (false, false);
+        for round in 0..ROUNDS {
             let setting = objective.setting(&best[0].at);
             let scene = source.load(&setting).map_err(|found| FitError::NoMotion(Failure::from(found).to_string()))?;
             horizon = match divergence(&scene.scene, cancel) {
@@ -174,9 +177,14 @@ impl Fit {
                 Err(_) => until,
             };
             let cut = horizon.min(resolved.scene.time.end);
-            if round > 0 && cut >= until * (1.0 - SAME_HORIZON) {
+            // The first values may be predictable for less time than the fitted ones: what these can be
+            // compared with counts, too. Rows that come, go and would come again stay away.
+            let (same, longer) = ((cut - until).abs() <= SAME_HORIZON * until, cut > until);
+            if round > 0 && (same || (longer && turned)) {
                 break;
             }
+            turned |= lengthened && !longer;
+            lengthened |= round > 0 && longer;
             until = cut;
             // From the beginning of the motion to all of it: after many impacts the difference is
             // small only very near the right values, and the way there leads through the beginning.

@@ -1,7 +1,7 @@
 //! The difference between a measured motion and that of a scene with trial values.
 
 use super::FitKey;
-use crate::compare::{MotionTrace, Tracer, golden, mismatch_and_shift};
+use crate::compare::{FINE, MotionTrace, Tracer, golden, mismatch_and_shift};
 use crate::measured::{Channel, MeasuredMotion, Sign, local_fit};
 use crate::{Failure, Setting, StudyScene};
 use std::sync::Arc;
@@ -55,7 +55,10 @@ impl<'a> Objective<'a> {
         let one = |(_, values): &(Channel, Vec<f64>)| {
             let largest =
                 values.iter().filter(|value| value.is_finite()).fold(0.0, |most: f64, value| most.max(value.abs()));
-            local_fit(&motion.t, values, NOISE_WINDOW).noise.max(LEAST_NOISE * largest).max(f64::MIN_POSITIVE)
+            // The standard deviation of a uniform distribution over a step.
+            let rounding = step_of(values, LEAST_NOISE * largest) / 12.0_f64.sqrt();
+            let scatter = local_fit(&motion.t, values, NOISE_WINDOW).noise;
+            scatter.max(rounding).max(LEAST_NOISE * largest).max(f64::MIN_POSITIVE)
         };
         motion.channels.iter().map(one).collect()
     }
@@ -106,7 +109,7 @@ impl<'a> Objective<'a> {
             Some(shift) => shift,
             None => {
                 let reach = 1.5 * self.motion.interval();
-                golden(near - reach, near + reach, |shift| self.residuals(&trace, shift, near).2)
+                golden(near - reach, near + reach, FINE, |shift| self.residuals(&trace, shift, near).2)
             }
         };
         let (residuals, offset, cost) = self.residuals(&trace, shift, near);
@@ -182,5 +185,69 @@ impl<'a> Objective<'a> {
             all.extend(std::iter::repeat_n((*channel, *noise), count));
         }
         all
+    }
+}
+
+/// The step to which values are rounded: the greatest common divisor of their differences; 0 if it is
+/// below `least`, or they are all the same.
+fn step_of(values: &[f64], least: f64) -> f64 {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    // What is left of a difference by the rounding of doubles.
+    let nothing = 1e-3 * least;
+    let mut step = 0.0;
+    for difference in sorted.windows(2).map(|pair| pair[1] - pair[0]) {
+        let mut rest = difference;
+        while rest > nothing {
+            let left = step % rest;
+            // A little less than a multiple is one, too.
+            (step, rest) = (rest, if rest - left <= nothing { 0.0 } else { left });
+        }
+        if step > 0.0 && step < least {
+            return 0.0;
+        }
+    }
+    step
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The noise that is found in values of an angle at 165 rows per second.
+    fn noise_of(values: Vec<f64>) -> f64 {
+        let t = (0..values.len()).map(|k| k as f64 / 165.0).collect();
+        let channels = vec![(Channel::Phi, values)];
+        let motion = MeasuredMotion { t, channels, markers: None, phi_from_first_row: false };
+        Objective::noise_of(&motion)[0]
+    }
+
+    #[test]
+    fn the_step_of_rounded_values_is_found() {
+        let values = |step: f64| (0..50).map(|k| step * f64::from(6 + 4 * k * k)).collect::<Vec<f64>>();
+        // Differences 4, 12, 20, ... have 4 in common.
+        for step in [1e-4, 0.01_f64.to_radians(), 3.0] {
+            assert!((step_of(&values(step), 1e-6 * 1e4 * step) / (4.0 * step) - 1.0).abs() < 1e-9);
+        }
+        let unrounded: Vec<f64> = (0..50).map(|k| f64::from(k).sin()).collect();
+        assert_eq!((step_of(&unrounded, 1e-6), step_of(&[0.3; 4], 1e-6), step_of(&[], 1e-6)), (0.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn rounding_is_noise_also_where_most_rows_rest() {
+        // A second of motion, then rest; a step of 0.01 degrees.
+        let step = 0.01_f64.to_radians();
+        let phi = |t: f64| if t < 1.0 { 0.1 * (1.0 - t) * (6.0 * t).cos() } else { 0.0013 };
+        for rows in [165, 300, 400, 3000] {
+            let values = (0..rows).map(|k| (phi(f64::from(k) / 165.0) / step).round() * step).collect();
+            let share = noise_of(values) / (step / 12.0_f64.sqrt());
+            // An estimate from 160 rows is good to about a tenth; rounding is never less.
+            assert!((0.999..1.2).contains(&share), "{rows} rows: {share} of the noise of rounding");
+        }
+        // Also where values are no multiples of a step, as angles from coordinates of markers.
+        let rounded = |x: f64| (x / 1e-4).round() * 1e-4;
+        let angle = |phi: f64| rounded(0.1 * phi.sin()).atan2(rounded(0.1 * phi.cos()));
+        let noise = [165, 3000].map(|rows| noise_of((0..rows).map(|k| angle(phi(f64::from(k) / 165.0))).collect()));
+        assert!((noise[1] / noise[0] - 1.0).abs() < 0.1, "{noise:?}");
     }
 }

@@ -134,6 +134,14 @@ impl ColumnLayout {
                 "give `at` for all, or for none",
             );
         }
+        for (place, marker) in layout.markers.iter().enumerate() {
+            let same = |other: &&MarkerSpec| marker.at.is_some() && other.at == marker.at;
+            if let Some(other) = layout.markers[..place].iter().find(same) {
+                let path = format!("marker.{}.at", marker.name);
+                let rule = format!("the place of the marker `{}`, too", other.name);
+                reader.wrong(&path, None, &rule, "give each marker its own place on the block");
+            }
+        }
         if reader.found.has_errors() { Err(reader.into_findings()) } else { Ok(layout) }
     }
 
@@ -263,6 +271,14 @@ mod tests {
         let layout = ColumnLayout::read(text, "f").unwrap();
         assert_eq!((layout.rate, layout.separator, layout.y_down), (Some(165.0), Some('\t'), true));
         assert_eq!((layout.markers[0].at, layout.markers[0].y.column.as_deref()), (Some([0.01, -0.02]), Some("3")));
+    }
+
+    #[test]
+    fn two_markers_at_one_place_are_refused() {
+        let marker = |name: &str, at: &str| format!("[marker.{name}]\nx = \"{name}x\"\ny = \"{name}y\"\nat = {at}\n");
+        let (place, same) = ("[\"1 cm\", \"2 cm\"]", "[\"10 mm\", \"20 mm\"]");
+        let found = ColumnLayout::read(&(marker("a", place) + &marker("b", same)), "f").unwrap_err().to_string();
+        assert!(found.contains("marker.b.at") && found.contains("the place of the marker `a`, too"), "{found}");
     }
 
     #[test]

@@ -120,7 +120,16 @@ impl Measured {
             if layout.y_down {
                 y.iter_mut().for_each(|y| *y = -*y);
             }
-            markers.push(Marker { x, y, at: spec.at });
+            let marker = Marker { x, y, at: spec.at };
+            // By name or by number, the same columns twice: a line without length has no angle.
+            if let Some(place) = markers.iter().position(|other: &Marker| other.is_always_at(&marker)) {
+                let (first, second) = (&layout.markers[place].name, &spec.name);
+                return Err(MeasuredError::Columns(format!(
+                    "the markers `{first}` and `{second}` are at the same place in all rows, so that they show no angle: give \
+                     each its own columns"
+                )));
+            }
+            markers.push(marker);
         }
         let mut channels = Vec::new();
         for channel in Channel::ALL {
@@ -243,6 +252,13 @@ fn remedy(error: &quantity::QuantityError) -> String {
 }
 
 impl Marker {
+    /// Whether another one is at the same place in all rows that have both.
+    fn is_always_at(&self, other: &Self) -> bool {
+        let same = |row: usize| self.x[row] == other.x[row] && self.y[row] == other.y[row];
+        let mut both = (0..self.x.len()).filter(|&row| self.is_seen(row) && other.is_seen(row)).peekable();
+        both.peek().is_some() && both.all(same)
+    }
+
     fn is_seen(&self, row: usize) -> bool {
         self.x[row].is_finite() && self.y[row].is_finite()
     }
@@ -405,6 +421,18 @@ mod tests {
         assert_eq!(motion.t[2], 102.0 / 165.0);
         let phi = motion.values(Channel::Phi).unwrap();
         assert!(phi[3].is_nan() && (phi[4] + 4.0_f64.to_radians()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn markers_of_the_same_columns_are_refused() {
+        let rows: String = (0..20).map(|k| format!("{k},{},{},{}\n", 3 * k, 2 * k, 5 * k)).collect();
+        let read = |toml: &str| {
+            Measured::read(format!("t,ax,ay,bx\n{rows}").as_bytes(), &ColumnLayout::read(toml, "l").unwrap(), "b")
+        };
+        let a = "[marker.a]\nx = \"ax\"\ny = \"ay\"\n";
+        let found = read(&format!("{a}[marker.b]\nx = 2\ny = 3\n")).unwrap_err().to_string();
+        assert!(found.contains("the markers `a` and `b` are at the same place in all rows"), "{found}");
+        assert!(read(&format!("{a}[marker.b]\nx = \"bx\"\ny = \"ay\"\n")).is_ok());
     }
 
     #[test]

@@ -11,8 +11,11 @@ pub struct LocalFit {
     /// Their rates, per second.
     pub rate: Vec<f64>,
     /// Standard deviation of the samples about their parabolas, corrected for the three unknowns:
-    /// their noise, if the motion is smooth over a window. 0 if a window has three rows.
+    /// their noise, if the motion is smooth over a window; without the windows in which all values are
+    /// equal. 0 if a window has three rows.
     pub noise: f64,
+    /// The rows of the window; 1 if nothing was smoothed.
+    pub window: usize,
 }
 
 /// Fits a parabola by least squares through `window` samples around each sample (Savitzky and Golay
@@ -22,7 +25,7 @@ pub struct LocalFit {
 pub fn local_fit(t: &[f64], y: &[f64], window: usize) -> LocalFit {
     let present: Vec<usize> = (0..t.len()).filter(|&k| y[k].is_finite()).collect();
     let window = window.max(LEAST_WINDOW).min(present.len());
-    let mut fit = LocalFit { value: vec![f64::NAN; t.len()], rate: vec![f64::NAN; t.len()], noise: 0.0 };
+    let mut fit = LocalFit { value: vec![f64::NAN; t.len()], rate: vec![f64::NAN; t.len()], noise: 0.0, window };
     if window < LEAST_WINDOW {
         return fit;
     }
@@ -36,7 +39,10 @@ pub fn local_fit(t: &[f64], y: &[f64], window: usize) -> LocalFit {
             let s = t[*row] - t[k];
             y[*row] - (a + s * (b + s * c))
         };
-        if window > LEAST_WINDOW {
+        // Where no value differs from the next, the motion is at rest and its noise below the rounding of
+        // the table: that says nothing of the noise elsewhere.
+        let rests = rows.iter().all(|&row| y[row] == y[rows[0]]);
+        if window > LEAST_WINDOW && !rests {
             let sum: f64 = rows.iter().map(|row| off(row).powi(2)).sum();
             squares.push(sum / (window - LEAST_WINDOW) as f64);
         }

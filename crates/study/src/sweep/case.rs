@@ -196,10 +196,14 @@ fn run_once(
         EndedWord::Complete | EndedWord::Stopped => String::new(),
         _ => Failure::unless_complete(ended, state.t).err().map_or_else(String::new, |error| error.to_string()),
     };
-    let summary = Summary::new(&resolved.scene, &layout, state, &record, word, 0.0);
-    let summary = match serde_json::to_value(&summary) {
-        Ok(summary) => summary,
-        Err(error) => return failed(error.to_string()),
+    // Columns need none.
+    let summary = if sweep.outputs().iter().any(|output| output.summary_path().is_some()) {
+        match serde_json::to_value(Summary::new(&resolved.scene, &layout, state, &record, word, 0.0)) {
+            Ok(summary) => summary,
+            Err(error) => return failed(error.to_string()),
+        }
+    } else {
+        serde_json::Value::Null
     };
     let outputs = sweep.outputs().iter().map(|output| output.cell(&summary, &columns)).collect();
     Some(CaseRow {

@@ -22,6 +22,7 @@ mod parquet;
 pub(crate) mod sample;
 mod shard;
 pub(crate) mod spec;
+mod tally;
 
 pub use case::{CaseRow, CaseStatus, run_cases};
 pub use figures::{Ensemble, FIGURE_FILES, StudyFigure, StudyTable, TableError, study_figures, study_page};
@@ -36,3 +37,4 @@ pub use output::Output;
 pub use parquet::{ParquetTableError, parquet_table};
 pub(crate) use sample::mixed;
 pub use shard::{Shard, ShardError};
+pub use tally::Tally;

@@ -77,8 +77,21 @@ impl Fragility {
     }
 }
 
-/// The observations of a study, with the group of each: cases that differ in the intensity alone,
-/// such as the runs with one record.
+/// Keys of a motion that set the size of its record.
+const SIZES: [&str; 5] = ["scale", "peak", "peak_velocity", "arias", "spectral_acceleration"];
+
+/// Whether a key sets the size of a motion and leaves its shape: of a signal that is its scale alone.
+fn is_size(key: &str) -> bool {
+    let parts: Vec<&str> = key.split('.').collect();
+    match parts.as_slice() {
+        ["signal", _, last] => *last == "scale",
+        [.., "motion", last] | [.., "motion", _, last] => SIZES.contains(last),
+        _ => false,
+    }
+}
+
+/// The observations of a study, with the group of each: cases that differ in the intensity and the size
+/// of the motion alone, such as the runs with one record.
 struct Seen {
     observations: Vec<Observation>,
     /// By group, in the order of the groups' names.
@@ -92,11 +105,11 @@ impl Seen {
         let cells = study.table.completed(event);
         let intensities = study.table.numbers(column);
         let keys = study.sweep.keys();
-        // Over an output each case has its own intensity, and runs of one record belong together.
-        let scaled: Vec<&str> =
-            asked.intensities.iter().map(String::as_str).filter(|name| keys.contains(name)).collect();
+        // Over an output each case has its own intensity, and runs of one record belong together however
+        // it is scaled.
+        let scales = |key: &str| is_size(key) || asked.intensities.iter().any(|name| name == key);
         let others: Vec<Vec<&str>> =
-            keys.iter().filter(|key| !scaled.contains(key)).map(|key| study.table.completed(key)).collect();
+            keys.iter().filter(|key| !scales(key)).map(|key| study.table.completed(key)).collect();
         let mut groups: BTreeMap<String, Vec<Observation>> = BTreeMap::new();
         let mut observations = Vec::new();
         for (k, (cell, intensity)) in cells.iter().zip(&intensities).enumerate() {
@@ -196,7 +209,7 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
     let mut notes = parts.notes;
     notes.push(format!(
         "P(event | x) = Φ(ln(x/θ)/β) by maximum likelihood over all cases. Bands and intervals hold {} % of {RESAMPLES} fits to \
-         groups drawn with replacement; a group is the cases with one record (all keys but the intensity the same), as runs \
+         groups drawn with replacement; a group is the cases with one record (all keys but the intensity and the scale of the motion the same), as runs \
          of one record are not independent.",
         100.0 * CONFIDENCE
     ));
@@ -356,5 +369,48 @@ impl Parts {
                 digits(high)
             ));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{StudyTable, Wanted};
+    use super::*;
+    use crate::sweep::Sweep;
+    use crate::sweep::number::in_table;
+
+    /// The groups of a study of three records at four sizes each.
+    fn groups(sizes: &str, intensity: &str) -> Vec<usize> {
+        let text = format!(
+            "scene = \"s.toml\"\n[grid]\nground.motion.x.record = [\"a\", \"b\", \"c\"]\n{sizes}\n[outputs]\npga = \"records.0.peak_acceleration\"\n\
+             overturned = \"overturned_at\"\n[fragility]\nevent = \"overturned\"\nintensity = {intensity}\n"
+        );
+        let sweep = Sweep::read(&text, "f", &|_, _| Err("none".to_owned())).unwrap();
+        let header: Vec<&str> = sweep.keys();
+        let mut table = format!("case,{},pga,overturned,status,error\n", header.join(","));
+        for number in 0..sweep.cases() {
+            let values: Vec<String> = sweep.case(number).iter().map(|(key, value)| in_table(key, value)).collect();
+            let time = if number % 3 == 0 { "1.5" } else { "" };
+            let _ = writeln!(table, "{number},{},{:?},{time},complete,", values.join(","), 1.0 + number as f64);
+        }
+        let Wanted { fragility, .. } = sweep.wanted().clone();
+        let table = StudyTable::read(&table).unwrap();
+        let study = Ensemble { name: "s".to_owned(), sweep, table };
+        let asked = fragility.unwrap();
+        Seen::of(&study, &asked, &asked.intensities[0]).groups.iter().map(Vec::len).collect()
+    }
+
+    #[test]
+    fn runs_of_one_record_are_one_group_by_whatever_they_are_scaled() {
+        let scales = "ground.motion.x.scale = [0.5, 1, 2, 4]";
+        let peaks = "ground.motion.x.peak = [\"1 m/s^2\", \"2 m/s^2\", \"3 m/s^2\", \"4 m/s^2\"]";
+        assert_eq!(groups(peaks, "\"ground.motion.x.peak\""), [4, 4, 4]);
+        assert_eq!(groups(peaks, "[\"pga\", \"ground.motion.x.peak\"]"), [4, 4, 4]);
+        assert_eq!(groups(peaks, "\"pga\""), [4, 4, 4]);
+        assert_eq!(groups(scales, "\"pga\""), [4, 4, 4]);
+        // A key that doesn't scale the motion: other blocks under the same record.
+        assert_eq!(groups("block.b.mass = [\"1 kg\", \"2 kg\"]", "\"pga\""), [1; 6]);
+        // The time of the peak of a wavelet is none of its size.
+        assert_eq!(groups("signal.w.peak = [\"1 s\", \"2 s\"]", "\"pga\""), [1; 6]);
     }
 }

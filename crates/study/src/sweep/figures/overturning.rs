@@ -70,13 +70,55 @@ pub(super) fn number(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>, r
     number
 }
 
-/// The smallest distance between neighbouring values: the side of a cell.
-fn spacing(values: &[f64]) -> f64 {
-    let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    let range = sorted.last().copied().unwrap_or(0.0) - sorted.first().copied().unwrap_or(0.0);
-    let apart = sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|apart| *apart > 1e-9 * range);
-    apart.reduce(f64::min).unwrap_or(1.0)
+/// The values along an axis of the map, and the edges of the cells about them: half-way to the
+/// neighbours, so that cells of uneven values touch, too.
+struct Spread {
+    values: Vec<f64>,
+    edges: Vec<f64>,
+    logarithmic: bool,
+}
+
+impl Spread {
+    fn of(values: &[f64]) -> Self {
+        let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let range = sorted.last().copied().unwrap_or(0.0) - sorted.first().copied().unwrap_or(0.0);
+        // Values apart by rounding are one.
+        sorted.dedup_by(|next, kept| *next - *kept <= 1e-9 * range);
+        // Values are spaced by a factor if their logarithms lie more evenly than they do.
+        let unevenness = |of: fn(f64) -> f64| {
+            let apart = sorted.windows(2).map(|pair| of(pair[1]) - of(pair[0]));
+            apart.clone().fold(0.0, f64::max) / apart.fold(f64::INFINITY, f64::min)
+        };
+        let positive = sorted.len() > 2 && sorted.first().is_some_and(|least| *least > 0.0);
+        let logarithmic = positive && unevenness(f64::ln) < (1.0 - 1e-6) * unevenness(|x| x);
+        let to = |x: f64| if logarithmic { x.ln() } else { x };
+        let middles: Vec<f64> = sorted.windows(2).map(|pair| 0.5 * (to(pair[0]) + to(pair[1]))).collect();
+        // The first and the last cell reach as far outwards as inwards; a single one is 1 wide.
+        let mirrored = |end: Option<&f64>, middle: Option<&f64>, alone: f64| {
+            let end = end.map_or(0.0, |end| to(*end));
+            middle.map_or(end + alone, |middle| 2.0 * end - middle)
+        };
+        let mut edges = vec![mirrored(sorted.first(), middles.first(), -0.5)];
+        edges.extend(&middles);
+        edges.push(mirrored(sorted.last(), middles.last(), 0.5));
+        if logarithmic {
+            edges.iter_mut().for_each(|edge| *edge = edge.exp());
+        }
+        Self { values: sorted, edges, logarithmic }
+    }
+
+    /// The edges of the cell of a value.
+    fn cell(&self, x: f64) -> (f64, f64) {
+        let place = self.edges.partition_point(|edge| *edge <= x).clamp(1, self.values.len().max(1));
+        (self.edges[place - 1], self.edges[place])
+    }
+
+    fn axis(&self, label: String) -> Axis {
+        let (low, high) = (self.edges[0], self.edges[self.edges.len() - 1]);
+        let between = if self.logarithmic { Axis::logarithmic_between } else { Axis::between };
+        between(label, low, high)
+    }
 }
 
 /// The figure of a study.
@@ -105,14 +147,10 @@ pub(super) fn figure(study: &Ensemble, asked: &Overturning) -> Result<StudyFigur
     }
     let order = |name: &str| name.parse::<f64>().unwrap_or(f64::INFINITY);
     groups.sort_by(|a, b| order(&a.0).total_cmp(&order(&b.0)).then(a.0.cmp(&b.0)));
-    let sides = [spacing(&xs), spacing(&ys)];
-    let ends = |values: &[f64], side: f64| {
-        let finite = || values.iter().copied().filter(|x| x.is_finite());
-        let (low, high) = (finite().reduce(f64::min).unwrap_or(0.0), finite().reduce(f64::max).unwrap_or(1.0));
-        (low - 0.5 * side, high + 0.5 * side)
-    };
-    let ((left, right), (bottom, top)) = (ends(&xs, sides[0]), ends(&ys, sides[1]));
-    let (x, y) = (Axis::between(asked.label(0), left, right), Axis::between(asked.label(1), bottom, top));
+    let (across, up) = (Spread::of(&xs), Spread::of(&ys));
+    let cells =
+        |points: Vec<(f64, f64)>| points.into_iter().map(|(x, y)| (across.cell(x), up.cell(y))).collect::<Vec<_>>();
+    let (x, y) = (across.axis(asked.label(0)), up.axis(asked.label(1)));
     let mut rows = Vec::new();
     let mut series: Vec<Series> = Vec::new();
     let mut rest: Vec<(f64, f64)> = Vec::new();
@@ -121,13 +159,13 @@ pub(super) fn figure(study: &Ensemble, asked: &Overturning) -> Result<StudyFigur
         let name = if asked.by.is_some() { format!("{by} {kind}") } else { asked.event.words() };
         rows.push(vec![name.clone(), points.len().to_string()]);
         if number < MOST_KINDS {
-            series.push(Series::cells(name, points, sides).number(number));
+            series.push(Series::cells(name, cells(points)).number(number));
         } else {
             rest.extend(points);
         }
     }
     if !rest.is_empty() {
-        series.push(Series::cells("others", rest, sides).number(MOST_KINDS));
+        series.push(Series::cells("others", cells(rest)).number(MOST_KINDS));
     }
     let mut notes = vec![format!("{events} of {cases} cases: {}.", asked.event.words())];
     if study.table.incomplete() > 0 {
@@ -144,4 +182,56 @@ pub(super) fn figure(study: &Ensemble, asked: &Overturning) -> Result<StudyFigur
         notes,
         summary: (vec!["Event", "Cases"], rows),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::StudyTable;
+    use super::*;
+    use crate::sweep::Sweep;
+
+    /// The share of the map that is filled if every case overturns.
+    fn filled(x: &str, y: &str) -> f64 {
+        let text = format!(
+            "scene = \"s.toml\"\n[grid]\nsignal.w.frequency = {x}\nsignal.w.scale = {y}\n[outputs]\noverturned = \"overturned_at\"\n\
+             [overturning]\nevent = \"overturned\"\nx = \"signal.w.frequency\"\ny = \"signal.w.scale\"\n"
+        );
+        let sweep = Sweep::read(&text, "f", &|_, _| Err("none".to_owned())).unwrap();
+        let mut table = "case,signal.w.frequency,signal.w.scale,overturned,status,error\n".to_owned();
+        for number in 0..sweep.cases() {
+            let values: Vec<String> =
+                sweep.case(number).into_iter().map(|(_, value)| value.trim_end_matches(" Hz").to_owned()).collect();
+            let _ = writeln!(table, "{number},{},1.5,complete,", values.join(","));
+        }
+        let asked = sweep.wanted().overturning.clone().unwrap();
+        let study = Ensemble { name: "s".to_owned(), sweep, table: StudyTable::read(&table).unwrap() };
+        let svg = figure(&study, &asked).unwrap().figure.to_svg();
+        let clip = svg.split("<clipPath").nth(1).unwrap();
+        let side = |name: &str| {
+            let text = clip.split(&format!("{name}=\"")).nth(1).unwrap().split('"').next().unwrap();
+            text.parse::<f64>().unwrap()
+        };
+        // Rectangles as M left top H right V bottom H left z.
+        let path = svg.split("stroke=\"none\"/>").next().unwrap().rsplit("d=\"").next().unwrap();
+        let area = path.split('M').skip(1).map(|part| {
+            let numbers: Vec<f64> = part.split([' ', 'H', 'V', 'z', '"']).flat_map(str::parse::<f64>).collect();
+            (numbers[2] - numbers[0]) * (numbers[3] - numbers[1])
+        });
+        area.sum::<f64>() / (side("width") * side("height"))
+    }
+
+    #[test]
+    fn a_map_on_which_all_overturns_has_no_blanks() {
+        let even = ["{ from = \"1 Hz\", to = \"4 Hz\", count = 7 }", "{ from = 1, to = 2, count = 5 }"];
+        let log =
+            ["{ from = \"0.1 Hz\", to = \"20 Hz\", count = 9, spacing = \"log\" }", "[0.1, 0.2, 0.5, 1, 2, 5, 10]"];
+        let uneven = ["[\"1 Hz\", \"2 Hz\", \"4 Hz\", \"5 Hz\"]", "[-1, 0, 3, 4.5]"];
+        for x in [even[0], log[0], uneven[0], "[\"2 Hz\"]"] {
+            for y in [even[1], log[1], uneven[1], "[3]"] {
+                let share = filled(x, y);
+                // Corners are written to 0.01 of some 50.
+                assert!((share - 1.0).abs() < 2e-3, "{x} {y}: {share}");
+            }
+        }
+    }
 }

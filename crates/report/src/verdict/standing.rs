@@ -1,0 +1,143 @@
+//! Which blocks stand at the start, and when one that began in flight has settled on a side (`docs/verdict.md`).
+
+use super::stance::Stance;
+use super::{KnownStance, Seen, Watched, Way};
+use teeter_detect::{BodyId, Candidate};
+use teeter_integrator::{Mismatch, Model, State};
+use teeter_scenario::scene::SupportingBody;
+use teeter_scenario::simulation::Layout;
+
+/// A block that began in flight has settled when it was unable to turn over by itself for this many √(R/g). In free fall as long as that its speed
+/// is at some time 2 √(gR) or more, and then its energy 2 m g R, which no point of no return asks for: so it has landed.
+const SETTLED: f64 = 4.0;
+
+/// Which blocks stand at the start: those that were placed on ground, a beam or a block whose motion is prescribed, or are joined to one of them by
+/// closed contacts, a chain of them; and those so little above what stands that by their fall and their speed they can't turn over.
+pub(super) fn at_start(
+    blocks: &[Watched],
+    layout: &Layout,
+    model: &Model<2>,
+    state: &State,
+) -> Result<Vec<bool>, Mismatch> {
+    // All that is no free block has one number, after the blocks.
+    let fixed = blocks.len();
+    let node = |block: usize| if blocks.get(block).is_some_and(|of| !of.driven) { block } else { fixed };
+    // Blocks are the model's first bodies.
+    let of_body = |body: BodyId| node(body.0 as usize);
+    let mut carried = vec![Vec::new(); fixed + 1];
+    for (number, block) in blocks.iter().enumerate() {
+        match block.on {
+            Some(SupportingBody::Block(below)) => carried[node(below)].push(number),
+            Some(SupportingBody::Beam(_) | SupportingBody::Ground) => carried[fixed].push(number),
+            None => {}
+        }
+    }
+    // More than a contact counts as closed at, and than the fall that as little energy takes as turns a block over.
+    let farthest = blocks.iter().map(|block| 2.0 * block.reach).fold(0.0, f64::max);
+    let mut candidates = Vec::new();
+    model.candidates(&state.q, farthest, &mut candidates)?;
+    for candidate in &candidates {
+        let [a, b] = [0, 1].map(|side| of_body(candidate.sides[side].body));
+        let closed = candidate.gap <= layout.openings.of_pair(candidate.id.pair()).gap;
+        for (side, [upper, lower]) in [[a, b], [b, a]].into_iter().enumerate() {
+            let block = blocks.get(upper).filter(|_| upper != fixed);
+            if closed || block.is_some_and(|block| block.as_good_as_stands(candidate, side, layout, upper, state)) {
+                carried[lower].push(upper);
+            }
+        }
+    }
+    let mut stands = vec![false; fixed + 1];
+    let mut next = vec![fixed];
+    while let Some(at) = next.pop() {
+        if !std::mem::replace(&mut stands[at], true) {
+            next.extend(&carried[at]);
+        }
+    }
+    stands.truncate(fixed);
+    Ok(stands)
+}
+
+impl Watched {
+    /// Whether a block, one side of an open contact, is above the other one and falls on it with too little energy to turn over.
+    fn as_good_as_stands(
+        &self,
+        candidate: &Candidate<2>,
+        side: usize,
+        layout: &Layout,
+        number: usize,
+        state: &State,
+    ) -> bool {
+        let Some(outline) = &self.outline else { return false };
+        let normal = candidate.frame.row(0);
+        let up =
+            (normal[0] * -outline.gamma.cos() + normal[1] * -outline.gamma.sin()) * if side == 0 { 1.0 } else { -1.0 };
+        if up <= 0.0 {
+            return false;
+        }
+        let angle = state.q[layout.blocks[number].range.start + 2];
+        let fall = self.mass * self.gravity * candidate.gap / up;
+        let energy = fall + self.kinetic(layout, number, state);
+        outline.stance(angle).is_some_and(|stance| self.stays(&stance, angle, energy))
+    }
+
+    /// Its kinetic energy relative to what carries it, J.
+    fn kinetic(&self, layout: &Layout, number: usize, state: &State) -> f64 {
+        let [vx, vy, spin] = self.velocity(layout, number, state);
+        0.5 * (self.mass * (vx * vx + vy * vy) + self.inertia * spin * spin)
+    }
+
+    /// Whether with this energy (J) it can't get past either of its points of no return.
+    fn stays(&self, stance: &Stance, angle: f64, energy: f64) -> bool {
+        [Way::Left, Way::Right].into_iter().all(|way| energy < self.lift(stance.edge(way), angle))
+    }
+}
+
+impl Seen {
+    /// How it stands; `None` of a block that can't overturn, or is in flight.
+    pub(super) fn stance(&self, watched: &Watched) -> Option<Stance> {
+        let began = self.began?;
+        let found = || watched.outline.as_ref().and_then(|outline| outline.stance(began));
+        self.stance.0.unwrap_or_else(found)
+    }
+
+    /// Of a block that began in flight: whether it has settled with this state, and how it stands then.
+    pub(super) fn settle(&mut self, watched: &Watched, layout: &Layout, number: usize, state: &State) {
+        let Some(outline) = &watched.outline else { return };
+        let (angle, energy) = (state.q[layout.blocks[number].range.start + 2], watched.kinetic(layout, number, state));
+        // No lift is more; most steps of a flight end here.
+        if energy >= 2.0 * watched.mass * watched.gravity * watched.reach {
+            self.settling = None;
+            return;
+        }
+        let within = |stance: &Stance| stance.right.top < angle && angle < stance.left.top;
+        // After a pause only the angle is known, from which it was found.
+        let known = self.stance.0.or_else(|| self.settling.map(|(_, at)| outline.stance(at)));
+        let stance = match known {
+            Some(None) => return,
+            Some(Some(stance)) if within(&stance) => stance,
+            _ => {
+                self.settling = None;
+                let found = outline.stance(angle);
+                self.stance = KnownStance(Some(found));
+                let Some(found) = found else { return };
+                found
+            }
+        };
+        if !watched.stays(&stance, angle, energy) {
+            self.settling = None;
+            return;
+        }
+        let (since, at) = match self.settling {
+            Some(known) => known,
+            None => {
+                self.stance = KnownStance(Some(outline.stance(angle)));
+                *self.settling.insert((state.t, angle))
+            }
+        };
+        if state.t - since >= SETTLED * watched.still_time {
+            // Found anew from this angle, as it will be after a pause.
+            (self.began, self.settling, self.stance) = (Some(at), None, KnownStance(None));
+            self.stood = watched.place(layout, number, state);
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! What is to be said of the rows of a study once it has ended, whichever session ran them.
+
+use super::{JournalError, RESULTS, Sweep, TableError};
+use std::path::Path;
+
+/// Counts over the rows of a table of results.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Tally {
+    /// Number of rows.
+    pub cases: u64,
+    /// Cases that didn't come to their end.
+    pub incomplete: u64,
+    /// Cases with steps whose contact problem was not solved to tolerance.
+    pub unsolved: u64,
+    /// Cases in which a search saw several limits.
+    pub several_limits: u64,
+    /// The outputs that have no value in any case.
+    pub empty: Vec<String>,
+}
+
+impl Tally {
+    /// Counts the rows of `results.csv` in a folder, one at a time.
+    ///
+    /// # Errors
+    /// If there is no such table.
+    pub fn of(folder: &Path, sweep: &Sweep) -> Result<Self, JournalError> {
+        let path = folder.join(RESULTS);
+        let wrong = |source: csv::Error| JournalError::Table { path: path.clone(), source: TableError::Csv(source) };
+        let mut reader = csv::Reader::from_path(&path).map_err(wrong)?;
+        let header = reader.headers().map_err(wrong)?.clone();
+        let place = |name: &str| header.iter().position(|column| column == name);
+        let [status, unsolved, changes] = ["status", "unsolved_steps", "find.changes"].map(place);
+        let mut outputs: Vec<(&str, Option<usize>)> =
+            sweep.outputs().iter().map(|output| (output.name(), place(output.name()))).collect();
+        let mut tally = Self::default();
+        let mut row = csv::StringRecord::new();
+        while reader.read_record(&mut row).map_err(wrong)? {
+            let cell = |place: Option<usize>| place.and_then(|place| row.get(place)).unwrap_or_default();
+            let count = |place: Option<usize>| cell(place).parse::<u64>().unwrap_or(0);
+            tally.cases += 1;
+            tally.incomplete += u64::from(!matches!(cell(status), "complete" | "stopped"));
+            tally.unsolved += u64::from(count(unsolved) > 0);
+            tally.several_limits += u64::from(count(changes) > 1);
+            outputs.retain(|(_, place)| cell(*place).is_empty());
+        }
+        tally.empty = outputs.into_iter().map(|(name, _)| name.to_owned()).collect();
+        Ok(tally)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_rows_count() {
+        let folder = std::env::temp_dir().join(format!("teeter-tally-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let text = "case,k,find.changes,a,b,status,unsolved_steps,error\n0,1,3,,,complete,0,\n1,2,1,0.5,,diverged,7,\"x, y\"\n2,3,,,,stopped,0,\n";
+        std::fs::write(folder.join(RESULTS), text).unwrap();
+        let sweep = "scene = \"s.toml\"\n[grid]\nk = [1, 2, 3]\n[outputs]\na = \"t\"\nb = \"t\"\n";
+        let sweep = Sweep::read(sweep, "f", &|_, _| Err(String::new())).unwrap();
+        let found = Tally::of(&folder, &sweep).unwrap();
+        std::fs::remove_dir_all(&folder).unwrap();
+        let expected = Tally { cases: 3, incomplete: 1, unsolved: 1, several_limits: 1, empty: vec!["b".to_owned()] };
+        assert_eq!(found, expected);
+    }
+}
