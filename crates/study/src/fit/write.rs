@@ -93,11 +93,11 @@ pub fn json(fit: &Fit, scene: &str, measured: &str, block: &str) -> String {
     serde_json::to_string_pretty(&value).unwrap_or_default() + "\n"
 }
 
-/// A value with its error to two digits of the error.
+/// A value with half of its 95 % interval, to two digits of the standard error.
 fn with_error(found: &Estimate) -> String {
     let unit = if found.unit.is_empty() { String::new() } else { format!(" {}", found.unit) };
     let Some(decimals) = decimals(found) else { return format!("{}{unit}", short(found.value)) };
-    format!("{:.decimals$} ± {:.decimals$}{unit}", found.value, 1.96 * found.standard_error)
+    format!("{:.decimals$} ± {:.decimals$}{unit} (95 %)", found.value, 1.96 * found.standard_error)
 }
 
 /// The decimals that the error of a value leaves: two digits of it; `None` if it has no error.
