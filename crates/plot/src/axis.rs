@@ -101,7 +101,7 @@ impl Axis {
             (low, high) if is_drawable(low, high) => (low, high),
             _ => (0.0, 1.0),
         };
-        Self { label: label.into(), scale: Scale::Logarithmic, low, high }
+        Self { label: label.into(), scale: Scale::Logarithmic, low, high, shown: 1.0 }
     }
 
     /// Sets the low end, if it is below the high end and, on a logarithmic axis, positive.
