@@ -36,6 +36,13 @@ const WRONG: f64 = 1e-6;
 /// comes from beside a side and into it at once is still so after them.
 const MOST_HALVINGS: u32 = 20;
 
+/// A contact that isn't there at the end of a step may have touched if it approached so many times as fast as it did
+/// at the start.
+const FASTER: f64 = 4.0;
+
+/// A contact that goes beside its surface in a step is looked at this part of the rest after its touch.
+const SOON_AFTER: f64 = 0.05;
+
 /// Searches for an event before the one that was found: one does, where corners follow each other.
 const MOST_EARLIER: usize = 20;
 
@@ -303,7 +310,35 @@ impl EventDriven {
                 return Ok(Some(s * h));
             }
         }
-        Ok(None)
+        self.dip_beside(model, h, work)
+    }
+
+    /// A shorter step where an open contact goes into its surface and then beside it, so that it isn't among those that
+    /// were found last, at the end of this step of `h` (s).
+    fn dip_beside(&mut self, model: &Model<2>, h: f64, work: &mut Workspace<2>) -> Result<Option<f64>, StepError> {
+        let (nq, nv) = (model.size().q, model.size().v);
+        let is_gone = |open: &&Open| work.candidates.binary_search_by_key(&open.id, |candidate| candidate.id).is_err();
+        let arrives = |open: &&Open| !open.is_prescribed && open.gap >= 0.0 && open.gap < -FASTER * h * open.rate;
+        self.ids.clear();
+        self.ids.extend(self.open.iter().filter(arrives).filter(is_gone).map(|open| open.id));
+        if self.ids.is_empty() {
+            return Ok(None);
+        }
+        let (q, v) = (&self.rk.end[..nq], &self.rk.end[nq..nq + nv]);
+        work.locate_past_ends(model, q, &self.ids, &mut self.found, &mut self.smooth.rooms)?;
+        let tolerance = self.located.tolerance(q);
+        let mut shortest = None::<f64>;
+        for candidate in self.found.iter().filter(|candidate| candidate.gap < -tolerance) {
+            let Ok(at) = self.open.binary_search_by_key(&candidate.id, |open| open.id) else { continue };
+            let start = Known { tau: 0.0, value: self.open[at].gap, rate: self.open[at].rate };
+            let rate = rate_at(&mut self.smooth.stage, model, q, candidate, v)?;
+            let end = Known { tau: h, value: candidate.gap, rate };
+            let touches = Watch::closing(candidate.id, 0.0, [start, end], tolerance).cubic_zero();
+            // If it is beside its surface there too, steps end ever closer to where it would have touched.
+            let shorter = touches + SOON_AFTER * (h - touches);
+            shortest = Some(shortest.map_or(shorter, |shortest| shortest.min(shorter)));
+        }
+        Ok(shortest)
     }
 
     /// Lists what has happened by the end of a step of `h` (s) from `t`; whether anything has.

@@ -223,7 +223,7 @@ impl Watch {
     }
 
     /// The time at which the cubic with the known gaps and rates is 0, s.
-    fn cubic_zero(&self) -> f64 {
+    pub(super) fn cubic_zero(&self) -> f64 {
         let [a, b] = self.between;
         let h = b.tau - a.tau;
         let (da, db) = (h * a.rate, h * b.rate);

@@ -222,3 +222,22 @@ fn a_block_turns_on_the_last_point_of_a_profile() {
         }
     }
 }
+
+/// Half a millisecond later the corner is beside the table, and nothing is inside of anything.
+#[test]
+fn a_corner_that_strikes_just_before_the_edge_of_a_table_is_not_missed() {
+    let scene = "[world]\ngravity = '0 m/s^2'\n[time]\nend = '4 ms'\nstep = '1 ms'\n\
+         [contact.c]\nbetween = ['*', '*']\nfriction = 0.2\nrestitution = 0.8\n\
+         [block.table]\nfixed = true\ndensity = '1000 kg/m^3'\ndepth = '10 cm'\nwidth = '40 cm'\nheight = '10 cm'\n\
+         position = ['-20 cm', '-5 cm']\n\
+         [block.b]\ndensity = '1000 kg/m^3'\ndepth = '10 cm'\nwidth = '10 cm'\nheight = '20 cm'\n\
+         position = ['1.238261671 cm', '11.107056924 cm']\nangle = '20 deg'\nvelocity = ['1 m/s', '-1 mm/s']\n";
+    let short = run(scene, "50 us").state;
+    assert!(short.v[4] > 0.0, "it comes back: {:?}", short.v);
+    for step in ["500 us", "1 ms", "4 ms"] {
+        let state = run(scene, step).state;
+        for (v, other) in state.v.iter().zip(&short.v) {
+            assert!((v - other).abs() < 1e-9, "{step}: {:?} and {:?}", state.v, short.v);
+        }
+    }
+}
