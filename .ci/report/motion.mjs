@@ -28,8 +28,6 @@ export function outOfPicture(every) {
 
 const gravity = 9.81;
 
-const GRAVITY = 9.81;
-
 /**
  * Where the verdict isn't what the rows of trajectory.csv say, by the rules of docs/verdict.md for gravity of 9.81 m/s²; `data` is that of
  * the page, of which the shapes of the bodies are taken.
@@ -52,7 +50,7 @@ export function wrongVerdicts(summary, trajectory, { scenery, frames }) {
     const stands = block.alpha !== null && Math.abs(at(trajectory[0], "phi")) < block.alpha;
     // What begins in free fall has a stance only from when it has settled, by which the rows before aren't measured.
     const [start, next] = trajectory;
-    const falls = next !== undefined && at(next, "vy") - at(start, "vy") < -0.9 * GRAVITY * (next.t - start.t);
+    const falls = next !== undefined && at(next, "vy") - at(start, "vy") < -0.9 * gravity * (next.t - start.t);
     const level = block.upright && stands && !falls && scenery.incline === 0 && !turns;
     const beyond = (row) => Math.abs(at(row, "phi")) > block.alpha;
     if (level) {
