@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use teeter_report::{ResultsError, write_whole};
 use teeter_scenario::suggest::nearest;
 
-/// The scenes by name. Each stands on its own: none names another file.
-const SCENES: [(&str, &str); 21] = [
+/// The scenes by name.
+const SCENES: [(&str, &str); 23] = [
     ("column-of-drums", include_str!("../scenes/column-of-drums.toml")),
     ("compliant-drop", include_str!("../scenes/compliant-drop.toml")),
     ("domino", include_str!("../scenes/domino.toml")),
@@ -25,13 +25,22 @@ const SCENES: [(&str, &str); 21] = [
     ("newtons-cradle", include_str!("../scenes/newtons-cradle.toml")),
     ("overhang", include_str!("../scenes/overhang.toml")),
     ("pile-of-polygons", include_str!("../scenes/pile-of-polygons.toml")),
+    ("pile-of-stones", include_str!("../scenes/pile-of-stones.toml")),
     ("pushed-block", include_str!("../scenes/pushed-block.toml")),
+    ("rocking-under-earthquake", include_str!("../scenes/rocking-under-earthquake.toml")),
     ("shaken-ground", include_str!("../scenes/shaken-ground.toml")),
     ("sliding", include_str!("../scenes/sliding.toml")),
     ("stack-of-blocks", include_str!("../scenes/stack-of-blocks.toml")),
     ("two-blocks-on-beam", include_str!("../scenes/two-blocks-on-beam.toml")),
     ("two-span-beam", include_str!("../scenes/two-span-beam.toml")),
 ];
+
+/// The tables that a scene names: the scene, the file, what it holds. It is written beside the scene.
+const TABLES: [(&str, &str, &str); 1] = [(
+    "rocking-under-earthquake",
+    "rocking-under-earthquake.csv",
+    include_str!("../scenes/rocking-under-earthquake.csv"),
+)];
 
 /// The scene written if none is chosen.
 pub(crate) const DEFAULT: &str = "free-rocking-on-beam";
@@ -59,21 +68,41 @@ pub(crate) fn new(options: &Options) -> Exit {
         let near = near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
         return bad_input(format!("error: no scene `{}`{near}\n  help: `teeter new --list` lists them", options.from));
     };
-    match &options.file {
-        Some(file) if file == Path::new("-") => print_all(scene),
-        Some(file) => match write(file, scene, options.force) {
-            Ok(()) => {
-                let file = file.display();
-                console.note(&format!("{file}: a copy of {name}; next: teeter check {file}, teeter run {file}"));
-                Exit::FinishedRun
-            }
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-                bad_input(format!("error: {} exists already; --force replaces it", file.display()))
-            }
-            Err(error) => bad_input(format!("error: can't write {}: {error}", file.display())),
-        },
-        None => bad_input("error: which file? Write teeter new FILE.toml, or - for standard output".to_owned()),
+    let Some(file) = &options.file else {
+        return bad_input("error: which file? Write teeter new FILE.toml, or - for standard output".to_owned());
+    };
+    let table = TABLES.iter().find(|(of, _, _)| of == name).map(|(_, file, text)| (*file, *text));
+    if file == Path::new("-") {
+        return match table {
+            Some((table, _)) => bad_input(format!(
+                "error: `{name}` needs its table, {table}, beside it\n  help: write both to a folder: teeter new {name}.toml --from {name}"
+            )),
+            None => print_all(scene),
+        };
     }
+    // The table first: what a scene names is there as soon as the scene is.
+    let table = table.map(|(table, text)| (file.with_file_name(table), text));
+    let files = table.iter().map(|(path, text)| (path.as_path(), *text)).chain([(file.as_path(), *scene)]);
+    for (path, text) in files {
+        match write(path, text, options.force) {
+            Ok(()) => {}
+            // As it would be written: perhaps by this command, for another copy of the scene.
+            Err(error) if error.kind() == ErrorKind::AlreadyExists && path != file && holds(path, text) => {}
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+                return bad_input(format!("error: {} exists already; --force replaces it", path.display()));
+            }
+            Err(error) => return bad_input(format!("error: can't write {}: {error}", path.display())),
+        }
+    }
+    let beside = table.map(|(path, _)| format!(", with its table {}", path.display())).unwrap_or_default();
+    let file = file.display();
+    console.note(&format!("{file}: a copy of {name}{beside}; next: teeter check {file}, teeter run {file}"));
+    Exit::FinishedRun
+}
+
+/// Whether a file holds a text.
+fn holds(path: &Path, text: &str) -> bool {
+    std::fs::read(path).is_ok_and(|bytes| bytes == text.as_bytes())
 }
 
 /// Writes a file; one that exists stays unless it may be replaced.
@@ -109,9 +138,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_scene_has_a_title_and_needs_no_other_file() {
+    fn every_scene_has_a_title_and_needs_no_other_file_than_its_table() {
         for (name, scene) in SCENES {
             assert!(!title(scene).is_empty(), "{name}");
+            if TABLES.iter().any(|(of, table, _)| *of == name && scene.contains(table)) {
+                continue;
+            }
             let loaded = teeter_scenario::load(scene.as_bytes(), name, name, &[]);
             assert!(loaded.is_ok(), "{name}: {}", loaded.unwrap_err());
         }

@@ -26,7 +26,14 @@ fn every_listed_scene_can_be_written_and_passes_the_check() {
     let folder = folder("all");
     let list = text(&teeter(&folder, &["new", "--list"]).stdout);
     let names: Vec<&str> = list.lines().filter_map(|line| line.split_whitespace().next()).collect();
-    assert!(names.len() > 15 && names.contains(&"masonry-arch"), "{list}");
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let of_scenes = |entry: std::io::Result<std::fs::DirEntry>| {
+        let file = entry.unwrap().file_name().into_string().unwrap();
+        file.strip_suffix(".toml").map(str::to_owned)
+    };
+    let mut all: Vec<String> = std::fs::read_dir(scenarios).unwrap().filter_map(of_scenes).collect();
+    all.sort();
+    assert_eq!(names, all);
     for name in names {
         let file = format!("{name}.toml");
         assert!(teeter(&folder, &["new", &file, "--from", name]).status.success(), "{name}");
@@ -35,6 +42,29 @@ fn every_listed_scene_can_be_written_and_passes_the_check() {
         let checked = teeter(&folder, &["check", &file]);
         assert!(checked.status.success(), "{name}: {}", text(&checked.stderr));
     }
+}
+
+#[test]
+fn a_scene_with_a_table_brings_it() {
+    let folder = folder("table");
+    let write = |file: &str, more: &[&str]| {
+        teeter(&folder, &[&["new", file, "--from", "rocking-under-earthquake"], more].concat())
+    };
+    let table = folder.join("rocking-under-earthquake.csv");
+    // Neither is lost where one of them is there.
+    std::fs::write(&table, "mine").unwrap();
+    let refused = write("quake.toml", &[]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("rocking-under-earthquake.csv exists already"));
+    assert!(!folder.join("quake.toml").exists() && std::fs::read_to_string(&table).unwrap() == "mine");
+    assert!(write("quake.toml", &["--force"]).status.success());
+    // The table of the first copy serves the second.
+    let second = write("second.toml", &[]);
+    assert!(second.status.success() && text(&second.stderr).contains("with its table"), "{second:?}");
+    assert!(teeter(&folder, &["check", "second.toml"]).status.success());
+    let alone = write("-", &[]);
+    assert_eq!(alone.status.code(), Some(2));
+    assert!(text(&alone.stderr).contains("needs its table"), "{alone:?}");
 }
 
 #[test]
