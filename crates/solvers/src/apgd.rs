@@ -153,9 +153,7 @@ impl<'a, const D: usize> ProblemData<'a, D> {
     }
 
     fn velocities(&self, p: &[Vector<D>], u: &mut [Vector<D>]) {
-        for (i, u) in u.iter_mut().enumerate() {
-            *u = self.h.velocity(i, self.problem.q(), p);
-        }
+        self.h.velocities(self.problem.q(), p, u);
     }
 
     /// De Saxcé's shift at a contact.
@@ -225,28 +223,24 @@ impl<const D: usize> Iterate<D> {
         }
     }
 
-    /// The gradient of the convex problem at y.
-    #[inline]
-    fn gradient(&self, i: usize) -> Vector<D> {
-        let mut gradient = self.u_y[i];
-        gradient[0] += self.shift[i];
-        gradient
-    }
-
     /// Steps from y along the gradient and projects onto the cones; the step is reduced until the
     /// curvature allows it.
     fn descend(&mut self, data: &ProblemData<'_, D>) {
-        let (q, mu) = (data.problem.q(), data.problem.mu());
         for _ in 0..MOST_CUTS {
-            for i in 0..self.p.len() {
-                self.next[i] = project(&(self.y[i] - self.gradient(i) * (self.step * self.own[i])), mu[i]);
+            let Self { own, step, shift, y, u_y, next, .. } = self;
+            let at = y.iter().zip(&*u_y).zip(&*shift).zip(&*own).zip(data.problem.mu());
+            for (next, ((((y, u_y), shift), own), mu)) in next.iter_mut().zip(at) {
+                let mut gradient = *u_y;
+                gradient[0] += shift;
+                *next = project(&(y - gradient * (*step * own)), *mu);
             }
+            data.velocities(&self.next, &mut self.u_next);
             let (mut curvature, mut way) = (0.0, 0.0);
-            for i in 0..self.p.len() {
-                self.u_next[i] = data.h.velocity(i, q, &self.next);
-                let d = self.next[i] - self.y[i];
-                curvature += d.dot(&(self.u_next[i] - self.u_y[i]));
-                way += d.norm_squared() / self.own[i];
+            let steps = self.next.iter().zip(&self.y).zip(self.u_next.iter().zip(&self.u_y)).zip(&self.own);
+            for (((next, y), (u_next, u_y)), own) in steps {
+                let d = next - y;
+                curvature += d.dot(&(u_next - u_y));
+                way += d.norm_squared() / own;
             }
             if self.step * curvature <= way {
                 break;
@@ -257,9 +251,13 @@ impl<const D: usize> Iterate<D> {
 
     /// Moves to the next point, and extrapolates by Nesterov's momentum.
     fn accelerate(&mut self) {
-        let n = self.p.len();
         // If the step goes uphill by the gradient at y, the momentum is reset.
-        let uphill = (0..n).fold(0.0, |sum, i| sum + self.gradient(i).dot(&(self.next[i] - self.p[i])));
+        let mut uphill = 0.0;
+        for (((next, p), u_y), shift) in self.next.iter().zip(&self.p).zip(&self.u_y).zip(&self.shift) {
+            let mut gradient = *u_y;
+            gradient[0] += shift;
+            uphill += gradient.dot(&(next - p));
+        }
         let squared = self.theta * self.theta;
         let mut theta_next = 0.5 * (-squared + self.theta * (squared + 4.0).sqrt());
         let mut momentum = self.theta * (1.0 - self.theta) / (squared + theta_next);
@@ -267,10 +265,13 @@ impl<const D: usize> Iterate<D> {
             (theta_next, momentum) = (1.0, 0.0);
         }
         self.theta = theta_next;
-        for i in 0..n {
-            self.y[i] = self.next[i] + (self.next[i] - self.p[i]) * momentum;
-            self.u_y[i] = self.u_next[i] + (self.u_next[i] - self.u[i]) * momentum;
-        }
+        let extrapolate = |ahead: &mut [Vector<D>], next: &[Vector<D>], last: &[Vector<D>]| {
+            for (ahead, (next, last)) in ahead.iter_mut().zip(next.iter().zip(last)) {
+                *ahead = next + (next - last) * momentum;
+            }
+        };
+        extrapolate(&mut self.y, &self.next, &self.p);
+        extrapolate(&mut self.u_y, &self.u_next, &self.u);
         std::mem::swap(&mut self.p, &mut self.next);
         std::mem::swap(&mut self.u, &mut self.u_next);
         self.step *= GROW;

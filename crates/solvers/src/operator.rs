@@ -36,6 +36,22 @@ impl<'a, const D: usize> Operator<'a, D> {
             Self::Product(problem) => problem.velocity(i, p),
         }
     }
+
+    /// The velocities at all contacts.
+    pub(crate) fn velocities(&self, q: &[Vector<D>], p: &[Vector<D>], u: &mut [Vector<D>]) {
+        match self {
+            Self::Blocks(h) => {
+                for (i, (u, q)) in u.iter_mut().zip(q).enumerate() {
+                    *u = row_product(h, i, q, p);
+                }
+            }
+            Self::Product(problem) => {
+                for (i, u) in u.iter_mut().enumerate() {
+                    *u = problem.velocity(i, p);
+                }
+            }
+        }
+    }
 }
 
 /// `start + Σ_j H_ij p_j`, with separate sums for the columns of the blocks, which are independent.
