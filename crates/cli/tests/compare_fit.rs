@@ -193,6 +193,33 @@ const BOUNCING: &str = "title = \"A block bounces on a springy table\"\n\
     [contact.feet]\nbetween = [\"cube\", \"table\"]\nfriction = 0.5\nrestitution = 0.3\n\
     [output]\nevery = \"0.1 ms\"\n";
 
+/// A rocking block hardly shows the damping of its beam: the sum of squares is a wide valley with a rough bottom, of
+/// which derivatives see the stones. The interval told must be that of the valley.
+#[test]
+fn values_that_fit_as_well_are_in_the_interval() {
+    let folder = folder("valley");
+    done(&folder, &["new", "scene.toml"]);
+    let truth = ["--set", "contact.feet.restitution=0.45", "--set", "beam.table.damping_ratio.ratio=0.023"];
+    let finely = ["--set", "time.end=\"1 s\"", "--set", "output.every=\"200 us\""];
+    done(&folder, &[&["run", "scene.toml", "--out", "truth", "--quiet"], &truth[..], &finely[..]].concat());
+    let mut noise = Noise(5);
+    let mut text = "t,phi [deg]\n".to_owned();
+    for [t, _, _, phi] in frames(&folder.join("truth"), "rocker") {
+        writeln!(text, "{:.6},{:.4}", t + 2.0, phi.to_degrees() + 0.05 * noise.next()).unwrap();
+    }
+    std::fs::write(folder.join("camera.csv"), text).unwrap();
+    let vary = ["--vary", "beam.table.damping_ratio.ratio=0.001..0.1", "--set", "contact.feet.restitution=0.45"];
+    let given = ["fit", "scene.toml", "camera.csv", "--quiet", "--force", "--out", "fitted"];
+    let told = done(&folder, &[&given[..], &vary[..], &finely[..]].concat());
+    let found = read(&folder.join("fitted/fit.json"));
+    let estimate = &found["estimates"][0];
+    let [low, high] = [0, 1].map(|end| estimate["interval_95"][end].as_f64().unwrap());
+    assert!(0.0 < low && low < 0.023 && 0.023 < high, "{low} to {high}\n{told}");
+    if !estimate["as_good"].is_null() {
+        assert!(told.contains("fit about as well as"), "{told}");
+    }
+}
+
 #[test]
 fn restitution_and_damping_come_back_within_two_percent() {
     let folder = folder("fit");
@@ -235,6 +262,7 @@ fn restitution_and_damping_come_back_within_two_percent() {
         // Five standard errors: the interval is neither far too narrow nor of no use.
         let error = estimate["standard_error"].as_f64().unwrap();
         assert!((value - exact).abs() < 5.0 * error && error < within, "{name}: {value} ± {error}");
+        assert!(estimate["as_good"].is_null(), "{estimate}");
     }
     // The noise of samples is estimated from parabolas, and a bouncing motion is none within seven
     // frames: the estimate is too large, and what is left below one. A misfit would leave far more.

@@ -1,8 +1,9 @@
 //! How well the fitted values are known, and which of them trade off.
 
-use super::matrix;
 use super::objective::{Objective, Trial};
+use super::{Evaluation, matrix};
 use crate::measured::Channel;
+use crate::runner;
 
 /// The confidence in a fitted value.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,13 +21,19 @@ pub struct Estimate {
     pub at_bound: bool,
     /// The standard error as a share of its range; `None` for what isn't a key.
     pub share_of_range: Option<f64>,
+    /// The least and the largest value that were found to fit as well, if they go beyond what the standard
+    /// error says; `None` for what isn't a key.
+    pub as_good: Option<(f64, f64)>,
+    /// The 95 % interval by the standard error, for a key on the scale of its range: of a logarithmic one it is positive.
+    interval: [f64; 2],
 }
 
 impl Estimate {
-    /// The 95 % interval.
+    /// The 95 % interval: by the standard error, and up to the values that fit as well.
     #[must_use]
     pub fn interval(&self) -> (f64, f64) {
-        (self.value - NORMAL_95 * self.standard_error, self.value + NORMAL_95 * self.standard_error)
+        let [low, high] = self.interval;
+        self.as_good.map_or((low, high), |as_good| (low.min(as_good.0), high.max(as_good.1)))
     }
 }
 
@@ -44,6 +51,16 @@ pub struct TradeOff {
 const NORMAL_95: f64 = 1.959_963_985;
 /// Correlations from here on are told.
 const TRADES: f64 = 0.9;
+/// 95 % quantile of χ² with one degree of freedom: values whose sum of squares over the variance is by no more
+/// above the least are in the interval of the profile likelihood (Venzon and Moolgavkar 1988, doi 10.2307/2347496).
+const CHI_SQUARED_95: f64 = NORMAL_95 * NORMAL_95;
+/// Values beside the fitted one are looked at from this share of the range on, each `FARTHER` times as far away.
+const NEAREST: f64 = 2e-3;
+const FARTHER: f64 = 1.3;
+/// How often the distance between values that still fit and the next is halved.
+const HALVINGS: usize = 4;
+/// An interval by the standard error that is passed by less than this factor is confirmed by what is beside it.
+const CONFIRMED: f64 = 1.3;
 /// Distance of the differences at first, as a share of the range.
 const REACH: f64 = 4e-3;
 
@@ -58,7 +75,12 @@ pub(super) struct Confidence {
 /// From the covariance σ²(JᵀJ)⁻¹ at the fitted values, σ² being the mean square that is left. Where
 /// one residual resembles the next, there is less in them than their number: the covariance is
 /// multiplied by (1 + ρ)/(1 − ρ).
-pub(super) fn of(objective: &Objective<'_>, fitted: &Trial) -> Option<Confidence> {
+pub(super) fn of(
+    objective: &Objective<'_>,
+    fitted: &Trial,
+    threads: usize,
+    evaluations: &mut Vec<Evaluation>,
+) -> Option<Confidence> {
     let keys = objective.keys;
     let near = fitted.shift;
     let of_channel = objective.channel_of_residuals(&fitted.trace, near);
@@ -143,6 +165,13 @@ pub(super) fn of(objective: &Objective<'_>, fitted: &Trial) -> Option<Confidence
         .filter(|[j, i]| *j < keys.len() && correlation[*i][*j].abs() >= TRADES)
         .map(|pair| TradeOff { pair, correlation: correlation[pair[1]][pair[0]] })
         .collect();
+    let way = |k: usize| -> Vec<f64> {
+        let along = |j: usize| if is_known { covariance[j][k] / covariance[k][k] } else { f64::from(u8::from(j == k)) };
+        (0..keys.len()).map(along).collect()
+    };
+    let ways: Vec<Vec<f64>> = (0..keys.len()).map(way).collect();
+    let errors: Vec<f64> = (0..keys.len()).map(error).collect();
+    let as_good = as_good(objective, fitted, &ways, &errors, variance, threads, evaluations);
     let estimates = names
         .into_iter()
         .enumerate()
@@ -153,9 +182,90 @@ pub(super) fn of(objective: &Objective<'_>, fitted: &Trial) -> Option<Confidence
             standard_error: slope * error(k),
             at_bound: k < keys.len() && (fitted.at[k] <= 1e-6 || fitted.at[k] >= 1.0 - 1e-6),
             share_of_range: (k < keys.len()).then(|| error(k)),
+            interval: match keys.get(k) {
+                Some(key) => [-1.0, 1.0].map(|side| key.beyond(fitted.at[k] + side * NORMAL_95 * error(k))),
+                None => [-1.0, 1.0].map(|side| value + side * NORMAL_95 * error(k)),
+            },
+            as_good: as_good.get(k).copied().flatten(),
         })
         .collect();
     Some(Confidence { estimates, correlation, trade_offs, residual_correlation: rho })
+}
+
+/// Values beside the fitted ones: of key `k` on one side, at growing distances. The other keys follow along `way`, by
+/// which they make up for a change of this one as far as the covariance knows.
+fn beside(fitted: &Trial, k: usize, side: f64, way: &[f64], error: f64) -> Vec<Vec<f64>> {
+    let mut places: Vec<Vec<f64>> = Vec::new();
+    let mut distance = (NORMAL_95 * error).max(NEAREST);
+    while distance < 1.0 {
+        let moved = |(at, way): (&f64, &f64)| (at + side * distance * way).clamp(0.0, 1.0);
+        let at: Vec<f64> = fitted.at.iter().zip(way).map(moved).collect();
+        let is_end = (at[k] - fitted.at[k]).abs() < distance * (1.0 - 1e-9);
+        if places.last().is_none_or(|last| last[k] != at[k]) && at[k] != fitted.at[k] {
+            places.push(at);
+        }
+        if is_end {
+            break;
+        }
+        distance *= FARTHER;
+    }
+    places
+}
+
+/// The values of each key that fit as well as the fitted one, on both sides of it, if they go beyond what its standard
+/// error says.
+///
+/// The motion is a rough function of the keys: each impact is shifted by the time step, and whole impacts come and go. At
+/// the bottom of a wide valley the differences then see its stones, and the standard error is far too small.
+fn as_good(
+    objective: &Objective<'_>,
+    fitted: &Trial,
+    ways: &[Vec<f64>],
+    errors: &[f64],
+    variance: f64,
+    threads: usize,
+    evaluations: &mut Vec<Evaluation>,
+) -> Vec<Option<(f64, f64)>> {
+    let keys = objective.keys.len();
+    let places: Vec<(usize, Vec<f64>)> = (0..keys)
+        .flat_map(|k| [-1.0, 1.0].map(|side| (k, side)))
+        .flat_map(|(k, side)| beside(fitted, k, side, &ways[k], errors[k]).into_iter().map(move |at| (k, at)))
+        .collect();
+    let rows = fitted.residuals.len() as f64;
+    let cost =
+        |(_, at): &(usize, Vec<f64>)| objective.trial(at, fitted.shift).map_or(f64::INFINITY, |trial| trial.cost);
+    let costs = runner::in_order(&places, threads, objective.cancel, cost, |_| {});
+    let tried = |at: &[f64], cost: f64| {
+        let values = objective.keys.iter().zip(at).map(|(key, share)| key.at(*share)).collect();
+        Evaluation { stage: "beside", values, cost }
+    };
+    evaluations.extend(places.iter().zip(&costs).map(|((_, at), cost)| tried(at, cost.unwrap_or(f64::INFINITY))));
+    let fits = |cost: f64| (cost - fitted.cost) * rows <= CHI_SQUARED_95 * variance;
+    let fit = |number: usize| costs.get(number).is_some_and(|cost| cost.is_some_and(fits));
+    let mut end = |k: usize, side: f64| -> f64 {
+        let mine: Vec<usize> = (0..places.len())
+            .filter(|&number| places[number].0 == k && side * (places[number].1[k] - fitted.at[k]) > 0.0)
+            .collect();
+        let Some(last) = mine.iter().rposition(|&number| fit(number)) else { return fitted.at[k] };
+        let mut inside = places[mine[last]].1.clone();
+        let Some(&beyond) = mine.get(last + 1) else { return inside[k] };
+        let mut outside = places[beyond].1.clone();
+        for _ in 0..HALVINGS {
+            let middle: Vec<f64> = inside.iter().zip(&outside).map(|(a, b)| 0.5 * (a + b)).collect();
+            let place = (k, middle);
+            let found = cost(&place);
+            evaluations.push(tried(&place.1, found));
+            if fits(found) { inside = place.1 } else { outside = place.1 }
+        }
+        inside[k]
+    };
+    let of = |k: usize| {
+        let [low, high] = [-1.0, 1.0].map(|side| end(k, side));
+        let limit = CONFIRMED * NORMAL_95 * errors[k];
+        let is_wider = fitted.at[k] - low > limit || high - fitted.at[k] > limit;
+        is_wider.then(|| (objective.keys[k].at(low), objective.keys[k].at(high)))
+    };
+    (0..keys).map(of).collect()
 }
 
 /// The correlation of each value with the next.

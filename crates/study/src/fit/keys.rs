@@ -79,12 +79,16 @@ impl FitKey {
 
     /// The value at a share of the range from 0 to 1, in its unit.
     pub(super) fn at(&self, share: f64) -> f64 {
-        let value = if self.logarithmic {
+        self.beyond(share).clamp(self.low, self.high)
+    }
+
+    /// The same beyond the bounds, too.
+    pub(super) fn beyond(&self, share: f64) -> f64 {
+        if self.logarithmic {
             self.low * (share * (self.high / self.low).ln()).exp()
         } else {
             self.low + share * (self.high - self.low)
-        };
-        value.clamp(self.low, self.high)
+        }
     }
 
     /// The share of the range at a value in its unit; `None` outside it.

@@ -44,7 +44,7 @@ pub struct FitSettings {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Evaluation {
-    /// `samples`, `improvement` or `simplex`.
+    /// `samples`, `improvement`, `simplex`, or `beside` the fitted values.
     pub stage: &'static str,
     /// The values in the keys' units.
     pub values: Vec<f64>,
@@ -201,7 +201,7 @@ impl Fit {
         }
         let fitted = &best[0];
         let setting = objective.setting(&fitted.at);
-        let Some(found) = confidence::of(&objective, fitted) else {
+        let Some(found) = confidence::of(&objective, fitted, settings.threads, &mut evaluations) else {
             if objective.cancel.load(std::sync::atomic::Ordering::Relaxed) {
                 return Err(FitError::Interrupted);
             }

@@ -25,6 +25,9 @@ pub const FILES: [&str; 10] = [
 /// A key whose standard error is more than this share of its range is hardly determined.
 const HARDLY: f64 = 0.15;
 
+/// An interval whose sides differ by more than this share of its width is told by its ends.
+const UNEVEN: f64 = 0.1;
+
 /// `fit.csv`: all values tried: `stage`, a column for each key (in its unit), `cost` (empty if the run failed).
 #[must_use]
 pub fn csv(fit: &Fit) -> String {
@@ -58,7 +61,7 @@ pub fn json(fit: &Fit, scene: &str, measured: &str, block: &str) -> String {
             let (low, high) = found.interval();
             json!({
                 "name": found.name, "unit": found.unit, "value": found.value, "standard_error": found.standard_error,
-                "interval_95": [low, high], "at_bound": found.at_bound, "standard_error_share_of_range": found.share_of_range,
+                "interval_95": [low, high], "as_good": found.as_good, "at_bound": found.at_bound, "standard_error_share_of_range": found.share_of_range,
             })
         })
         .collect();
@@ -96,13 +99,23 @@ pub fn json(fit: &Fit, scene: &str, measured: &str, block: &str) -> String {
 /// A value with half of its 95 % interval, to two digits of the standard error.
 fn with_error(found: &Estimate) -> String {
     let unit = if found.unit.is_empty() { String::new() } else { format!(" {}", found.unit) };
+    let (low, high) = found.interval();
+    let (below, above) = (found.value - low, high - found.value);
+    if (above - below).abs() > UNEVEN * (above + below) && (above + below).is_finite() {
+        let decimals = decimals_of(0.25 * (above + below)).unwrap_or(5);
+        let [value, low, high] = [found.value, low, high].map(|value| format!("{value:.decimals$}"));
+        return format!("{value}{unit} ({low} to {high}, 95 %)");
+    }
     let Some(decimals) = decimals(found) else { return format!("{}{unit}", short(found.value)) };
     format!("{:.decimals$} ± {:.decimals$}{unit} (95 %)", found.value, 1.96 * found.standard_error)
 }
 
 /// The decimals that the error of a value leaves: two digits of it; `None` if it has no error.
 fn decimals(found: &Estimate) -> Option<usize> {
-    let error = found.standard_error;
+    decimals_of(found.standard_error)
+}
+
+fn decimals_of(error: f64) -> Option<usize> {
     (error > 0.0 && error.is_finite()).then(|| (1 - error.log10().floor() as i32).clamp(0, 12) as usize)
 }
 
@@ -118,6 +131,15 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
     for found in &fit.estimates {
         if found.at_bound {
             texts.push(format!("warning: {} is at the bound of its range: widen it", found.name));
+        }
+        if let Some((low, high)) = found.as_good {
+            let decimals = decimals_of(0.25 * (high - low)).unwrap_or(5);
+            let [value, low, high] = [found.value, low, high].map(|value| format!("{value:.decimals$}"));
+            texts.push(format!(
+                "warning: values of {} from {low} to {high}{} fit about as well as {value}: the differences are a rough function of it, of which the standard error knows only the neighbourhood",
+                found.name,
+                if found.unit.is_empty() { String::new() } else { format!(" {}", found.unit) },
+            ));
         }
         if found.share_of_range.is_some_and(|share| !(share <= HARDLY)) {
             texts.push(format!(
