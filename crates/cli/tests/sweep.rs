@@ -128,7 +128,10 @@ fn a_study_continues_after_a_kill_to_the_same_bytes() {
         let mut journal = lines[0].to_owned();
         (0..kept).for_each(|k| journal.push_str(lines[1 + (5 * k) % 12]));
         journal.push_str(&lines[1 + (5 * kept) % 12][..9]);
-        std::fs::write(left.join("journal.csv"), journal).unwrap();
+        std::fs::write(left.join("journal.csv"), &journal).unwrap();
+        let anew = teeter(&folder, &["sweep", "sweep.toml", "--out", &format!("left-{kept}")]);
+        assert!(String::from_utf8(anew.stderr).unwrap().contains("--resume goes on with it"));
+        assert_eq!(std::fs::read_to_string(left.join("journal.csv")).unwrap(), journal);
         let out = format!("left-{kept}");
         let told = done(&folder, &["sweep", "sweep.toml", "--out", &out, "--resume"]);
         assert!(kept == 0 || told.contains(&format!("{kept} of 12 cases are done")), "{told}");

@@ -52,6 +52,9 @@ pub const FILES: [&str; 39] = [
     "scene.toml",
 ];
 
+/// The rows of a sweep that isn't finished.
+const JOURNAL: &str = "journal.csv";
+
 /// Why results can't be written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -62,6 +65,9 @@ pub enum ResultsError {
     /// There is a run that can go on.
     #[error("{} holds results already, and a checkpoint: --resume goes on from it, --force replaces them all", .0.display())]
     Resumable(PathBuf),
+    /// There is a study that can go on.
+    #[error("{} holds part of a sweep: --resume goes on with it, --force begins anew", .0.display())]
+    Unfinished(PathBuf),
     /// There are results of another command, some of them in files of the same names.
     #[error("{} holds the results of {command}, which are not to be mixed with others; take another folder (--out)", folder.display())]
     OfAnother {
@@ -173,8 +179,12 @@ impl Results {
         // First of all, as the series that lists them is told of by its name.
         let old: Vec<PathBuf> = series.chain(named).collect();
         if !old.is_empty() && !force {
-            let resumable = old.contains(&folder.join(CHECKPOINT));
-            let error = if resumable { ResultsError::Resumable } else { ResultsError::Exists };
+            let has = |file: &str| old.contains(&folder.join(file));
+            let error = match (has(CHECKPOINT), has(JOURNAL)) {
+                (true, _) => ResultsError::Resumable,
+                (_, true) => ResultsError::Unfinished,
+                _ => ResultsError::Exists,
+            };
             return Err(error(folder.to_owned()));
         }
         Ok(old)

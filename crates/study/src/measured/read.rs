@@ -297,7 +297,11 @@ impl Columns<'_> {
     }
 
     fn place(&self, column: &str) -> Option<usize> {
-        let by_name = self.names.iter().position(|(name, _)| name.to_lowercase() == column.trim().to_lowercase());
+        let wanted = column.trim().to_lowercase();
+        // As it stands there, with its unit, or by its title alone.
+        let whole =
+            self.table.heading.as_ref().and_then(|(_, cells)| cells.iter().position(|c| c.to_lowercase() == wanted));
+        let by_name = whole.or_else(|| self.names.iter().position(|(name, _)| name.to_lowercase() == wanted));
         let number = || column.trim().parse::<usize>().ok().and_then(|number| number.checked_sub(1));
         by_name.or_else(|| number().filter(|place| *place < self.count()))
     }
@@ -453,6 +457,19 @@ mod tests {
             let close = |channel, value: f64| (motion.values(channel).unwrap()[7] - value).abs() < 1e-12;
             assert!(close(Channel::Phi, 0.07) && close(Channel::X, 0.04) && close(Channel::Y, 0.07));
             assert!(motion.markers.unwrap().rms < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_column_is_named_with_its_unit_or_without() {
+        let text = format!(
+            "Time [s],Angle [rad],Angle [deg]\n{}",
+            rows(|k| format!("{},{},{k}", 0.1 * k as f64, 0.02 * k as f64))
+        );
+        for (t, phi, exact) in [("time", "angle", 0.14), ("Time [s]", "Angle [deg]", 7_f64.to_radians())] {
+            let layout = ColumnLayout::read(&format!("[columns]\nt = \"{t}\"\nphi = \"{phi}\"\n"), "f").unwrap();
+            let motion = read(&text, &layout).unwrap().motion(Sign::AsIs);
+            assert!((motion.values(Channel::Phi).unwrap()[7] - exact).abs() < 1e-12, "{phi}");
         }
     }
 
