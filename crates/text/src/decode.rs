@@ -328,7 +328,9 @@ impl Decoder<'_> {
         let remedy = match table.occurrence {
             Occurrence::Named => format!("write its keys under [{path}.NAME]"),
             Occurrence::Inline => {
-                format!("write {} = {{ … }} with {}", table.name(), self.schema.allowed(table).join(", "))
+                let elsewhere = table.keys.iter().map(|key| key.elsewhere).find(|text| !text.is_empty());
+                let elsewhere = elsewhere.map(|text| format!("; {text}")).unwrap_or_default();
+                format!("write {} = {{ … }} with {}{elsewhere}", table.name(), self.schema.allowed(table).join(", "))
             }
             _ => format!("write its keys under [{path}]"),
         };
@@ -424,8 +426,12 @@ impl Decoder<'_> {
             }
             _ => {
                 for key in required {
+                    let instead = match key.presence {
+                        Presence::RequiredWithoutAny(others) => format!("; or, instead, {}", others.join(", ")),
+                        _ => String::new(),
+                    };
                     let found = self.judge.source.error(origin, &join(path, key.name), "missing").with_remedy(format!(
-                        "{}: {}",
+                        "{}: {}{instead}",
                         expected(key),
                         uncapitalised(key.doc.trim_end_matches('.'))
                     ));

@@ -54,6 +54,8 @@ pub struct Key {
     pub bytes_each: u64,
     /// Condition for the key to apply; `None`: always.
     pub only_with: Option<OnlyWith>,
+    /// What a user may look for among the words of a choice, and where it is instead; empty if nothing.
+    pub elsewhere: &'static str,
 }
 
 /// Words of another key of the same table for which a key applies: with others it is refused, and
@@ -317,7 +319,18 @@ impl Key {
         example: &'static str,
         doc: &'static str,
     ) -> Self {
-        Self { name, kind, presence, reserved: &[], left_out_as: None, example, doc, bytes_each: 0, only_with: None }
+        Self {
+            name,
+            kind,
+            presence,
+            reserved: &[],
+            left_out_as: None,
+            example,
+            doc,
+            bytes_each: 0,
+            only_with: None,
+            elsewhere: "",
+        }
     }
 
     /// The same key with values that are not implemented yet.
@@ -331,6 +344,13 @@ impl Key {
     #[must_use]
     pub const fn left_out_as(mut self, word: &'static str) -> Self {
         self.left_out_as = Some(word);
+        self
+    }
+
+    /// The same choice, with what a user may look for in vain, told with what is allowed.
+    #[must_use]
+    pub const fn elsewhere(mut self, elsewhere: &'static str) -> Self {
+        self.elsewhere = elsewhere;
         self
     }
 

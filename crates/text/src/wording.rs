@@ -60,7 +60,8 @@ pub(crate) fn names(keys: &[Key]) -> String {
 #[must_use]
 pub fn expected(key: &Key) -> String {
     match key.kind {
-        Kind::Choice(choices) => format!("choose one of {}", choices.join(", ")),
+        Kind::Choice(choices) if key.elsewhere.is_empty() => format!("choose one of {}", choices.join(", ")),
+        Kind::Choice(choices) => format!("choose one of {}; {}", choices.join(", "), key.elsewhere),
         Kind::ChoicePair(choices) => {
             format!("two of {}, such as {}", choices.join(", "), key.example)
         }

@@ -51,6 +51,10 @@ pub(super) const CHAMFER: Key = key(
     "Length that is cut off from both sides at each corner of a polygon, which gets two corners for each.",
 );
 
+/// The shapes that have no kind.
+const ELSEWHERE: &str =
+    "without `shape`, a rectangle has `width` and `height`, a disc its `radius`, another polygon its `points`";
+
 pub(super) const SHAPE_KEYS: &[Key] = &[
     key(
         "kind",
@@ -59,7 +63,8 @@ pub(super) const SHAPE_KEYS: &[Key] = &[
         "\"regular\"",
         "regular: a regular polygon, its first side level at the bottom; trapezoid: with level bottom and top; voussoir: a \
          stone of an arch; stadium: a rectangle with half circles at its ends.",
-    ),
+    )
+    .elsewhere(ELSEWHERE),
     key("sides", Kind::Integer { min: 3, max: 1000 }, Required, "6", "Number of sides.").only_with("kind", REGULAR),
     key("radius", SIZE, Required, "\"5 cm\"", "Distance of the corners from the centre, or radius of the ends.")
         .only_with("kind", &["regular", "stadium"]),
