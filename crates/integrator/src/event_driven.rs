@@ -116,6 +116,8 @@ pub struct EventDriven {
     handled: f64,
     /// Energy that contacts took as they came to rest at the start of the phase, J.
     projected: f64,
+    /// Open contacts with larger gaps than this can't close within the step of the method, m.
+    near: f64,
     /// Steps of the method within the present one of the scheme's.
     substeps: usize,
     /// Whether loads or drives aren't smooth where the phase would end.
@@ -178,6 +180,7 @@ impl EventDriven {
             h: 0.0,
             handled: 0.0,
             projected: 0.0,
+            near: 0.0,
             substeps: 0,
             ends_with_break: false,
         })

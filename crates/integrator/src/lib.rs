@@ -73,6 +73,7 @@ mod equilibrium;
 mod event_driven;
 mod factors;
 mod free_velocity;
+mod gap_cubic;
 mod generalized_alpha;
 mod laws;
 mod ledger;

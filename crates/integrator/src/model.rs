@@ -530,6 +530,11 @@ impl<const D: usize> Model<D> {
         }
     }
 
+    /// A speed that no point of any body exceeds at velocities `v`, m/s; infinity where none is known.
+    pub(crate) fn fastest(&self, v: &[f64]) -> f64 {
+        self.parts.iter().map(|part| part.system.fastest(&v[part.v.clone()])).fold(0.0, f64::max)
+    }
+
     /// The relative velocity u = v_0 − v_1 of a candidate in its frame, by its Jacobian rows at
     /// `q`, m/s.
     ///

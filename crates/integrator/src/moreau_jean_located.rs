@@ -3,6 +3,7 @@
 mod impact;
 mod leave;
 mod locate;
+mod missed;
 mod turn;
 
 use crate::closed_step::{ClosedStep, THETA};
@@ -81,6 +82,9 @@ pub struct MoreauJeanLocated<const D: usize> {
     slides: Vec<Slide<D>>,
     ids: Vec<ContactId>,
     near: Candidates<D>,
+    /// What is near at the start of an attempt, and what is inside at a time within it.
+    at_start: Candidates<D>,
+    on_the_way: Candidates<D>,
     /// Of these how far it is to the end of their surface, m.
     rooms: Vec<f64>,
     /// Contacts that are past it at the end of the attempt.
@@ -98,8 +102,11 @@ pub struct MoreauJeanLocated<const D: usize> {
     /// Contacts with something elastic that pressed lately: pair, point, and the last step in which
     /// they did, as the state's memory holds them.
     lately: Vec<f64>,
-    /// Whether any subsystem is elastic.
+    /// Which subsystems are elastic, and whether any is.
+    elastic: Vec<bool>,
     has_elastic: bool,
+    /// Whether any contact may be without something elastic.
+    has_rigid_pairs: bool,
     /// Whether more contacts struck in the step than are located.
     unlocated: bool,
 }
@@ -129,6 +136,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
             slides: Vec::new(),
             ids: Vec::new(),
             near: Vec::new(),
+            at_start: Vec::new(),
+            on_the_way: Vec::new(),
             rooms: Vec::new(),
             leaving: Vec::new(),
             place: Vec::new(),
@@ -137,7 +146,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
             v: Vec::new(),
             stays: Vec::new(),
             lately: Vec::new(),
+            elastic: Vec::new(),
             has_elastic: true,
+            has_rigid_pairs: true,
             unlocated: false,
         })
     }
@@ -173,6 +184,9 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.slides.reserve(contacts);
         self.ids.reserve(contacts);
         self.near.reserve(contacts);
+        self.at_start.reserve(contacts);
+        // Few of many contacts are inside on the way.
+        self.on_the_way.reserve(contacts.min(crate::stage::RESERVED_CONTACTS));
         self.rooms.reserve(contacts);
         self.leaving.reserve(contacts);
         self.stays.reserve(contacts);
@@ -192,8 +206,14 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         work.factors(model, weights(0.5 * state.dt, THETA), &state.q, Keep::Once)?;
         let w = weights(state.dt, THETA);
         work.factors(model, w, &state.q, Keep::Pinned)?;
-        let mut parts = model.parts().iter().enumerate();
-        self.has_elastic = parts.any(|(index, part)| is_elastic(part, index, w, &mut work.factors));
+        let parts = model.parts().iter().enumerate();
+        self.elastic.clear();
+        self.elastic.extend(parts.map(|(index, part)| is_elastic(part, index, w, &mut work.factors)));
+        self.has_elastic = self.elastic.contains(&true);
+        let wiring = model.detector().wiring();
+        // Without a list anything may touch anything.
+        self.has_rigid_pairs =
+            wiring.is_empty() || wiring.iter().any(|wiring| !self.is_with_elastic(model, &wiring.bodies));
         Ok(())
     }
 

@@ -342,6 +342,13 @@ pub trait Bodies<const D: usize>: Send + Sync {
         None
     }
 
+    /// A speed that no point of its bodies exceeds at velocities `v`, m/s, so that schemes that look for
+    /// what may touch within a step needn't look further away. The default, infinity, is always right.
+    fn fastest(&self, v: &[f64]) -> f64 {
+        let _ = v;
+        f64::INFINITY
+    }
+
     /// Hands the points of a body's surface to `each`, from the left, at which it comes out furthest in
     /// a direction, more so than beside them, and whose feet lie between those of two places; see
     /// [`teeter_detect::Geometry::summits`]. None, the default, for a surface that is flat.

@@ -431,8 +431,8 @@ impl StaticModel {
         model: &Model<2>,
         found: &Equilibrium<2>,
     ) -> Result<Vec<(usize, Vec<SpanLoad>)>, Mismatch> {
-        let mut candidates = Vec::new();
-        model.candidates(&found.q, f64::INFINITY, &mut candidates)?;
+        let (mut candidates, pressing) = (Vec::new(), found.forces.iter().map(|(id, _)| *id));
+        model.detector().locate(&model.placed(&found.q)?, &pressing.collect::<Vec<_>>(), &mut candidates);
         let on = |body: BodyId, span: f64| {
             let loads = candidates.iter().flat_map(|candidate| {
                 let force =

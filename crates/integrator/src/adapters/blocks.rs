@@ -219,6 +219,11 @@ impl Bodies<2> for Blocks {
         Some(frame * turning_bias(&triple(q, body as usize), v.get(3 * body as usize + 2)?, point))
     }
 
+    fn fastest(&self, v: &[f64]) -> f64 {
+        let blocks = v.chunks_exact(3).zip(&self.blocks);
+        blocks.map(|(v, block)| v[0].hypot(v[1]) + v[2].abs() * block.radius).fold(0.0, f64::max)
+    }
+
     fn place(&self, body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
         let pose = Pose::new(&triple(q, body as usize));
         for (x, rho) in out.iter_mut().zip(local) {

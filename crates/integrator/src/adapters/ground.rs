@@ -133,6 +133,15 @@ impl Bodies<2> for Ground {
         })
     }
 
+    fn fastest(&self, v: &[f64]) -> f64 {
+        match v {
+            // It goes on without end: where it turns, some point of it is faster.
+            &[_, _, omega] if omega != 0.0 => f64::INFINITY,
+            &[x, y, _] => x.hypot(y),
+            _ => 0.0,
+        }
+    }
+
     fn place(&self, _body: u32, q: &[f64], local: &[Vector2<f64>], out: &mut [Vector2<f64>]) {
         if let Form::Level(_) = self.0 {
             out.copy_from_slice(local);

@@ -4,6 +4,7 @@ use super::instant::{Kind, Known, Watch};
 use super::modes::Pressing;
 use super::runge_kutta::RungeKutta;
 use super::{EventDriven, FLOOR, Stop};
+use crate::gap_cubic::GapCubic;
 use crate::moreau_jean_located::rate_at;
 use crate::{Account, Model, State, StepError, Workspace};
 use teeter_detect::{Candidate, ContactId};
@@ -37,7 +38,7 @@ const WRONG: f64 = 1e-6;
 const MOST_HALVINGS: u32 = 20;
 
 /// A contact that isn't there at the end of a step may have touched if it approached so many times as fast as it did
-/// at the start.
+/// at the start; and no body moves so many times as fast within a step as at its ends.
 const FASTER: f64 = 4.0;
 
 /// A contact that goes beside its surface in a step is looked at this part of the rest after its touch.
@@ -99,14 +100,17 @@ impl EventDriven {
         if self.smooth.contacts.iter().any(|contact| !(contact.presses() > -WRONG && contact.holds() > -WRONG)) {
             return Ok(Stop::Stuck);
         }
-        self.find_open(model, work)?;
         let (mut t, mut duration) = (from.t, 0.0);
         let (mut noise, mut noisy, mut flat) = (0.0_f64, f64::INFINITY, 0);
         let (mut before, mut explored, mut halvings) = (None::<(f64, f64)>, false, 0);
+        let (mut is_open_known, mut is_refused) = (false, false);
         while self.substeps < Self::MOST_SUBSTEPS {
             self.substeps += 1;
             let rest = last - t;
-            let mut h = if self.h < 0.9 * rest { self.h } else { rest };
+            // What was refused is tried shorter, however little.
+            let enough = if is_refused { 1.0 } else { 0.9 };
+            let mut h = if self.h < enough * rest { self.h } else { rest };
+            is_refused = true;
             if !(h > 4.0 * f64::EPSILON * t.abs()) {
                 // Rounding leaves no time to go on.
                 return if rest > STEP_LEFT * from.dt {
@@ -148,6 +152,11 @@ impl EventDriven {
                 self.h = part * h;
                 work.counts.refused_attempts += 1;
                 continue;
+            }
+            // A shorter step from the same start needs no more.
+            if !is_open_known {
+                self.find_open(model, h, work)?;
+                is_open_known = true;
             }
             if let Some(shorter) = self.dip(model, h, work)? {
                 self.h = shorter;
@@ -199,7 +208,7 @@ impl EventDriven {
             }
             self.smooth.slope(model, t, &self.y, work, self.rk.first_slope())?;
             self.watch_start();
-            self.find_open(model, work)?;
+            (is_open_known, is_refused) = (false, false);
         }
         Ok(Stop::Stuck)
     }
@@ -258,12 +267,16 @@ impl EventDriven {
         Ok(rk.error(h, &self.scale))
     }
 
-    /// Finds the gaps of open contacts at the start of a step.
-    fn find_open(&mut self, model: &Model<2>, work: &mut Workspace<2>) -> Result<(), StepError> {
+    /// Finds the gaps at the start of the step of `h` (s) that was tried last, of open contacts that may close within
+    /// it.
+    fn find_open(&mut self, model: &Model<2>, h: f64, work: &mut Workspace<2>) -> Result<(), StepError> {
         self.open.clear();
         let (nq, nv) = (model.size().q, model.size().v);
         let (q, v) = (&self.y[..nq], &self.y[nq..nq + nv]);
-        work.detect(model, q, f64::INFINITY)?;
+        let fastest = model.fastest(v).max(model.fastest(&self.rk.end[nq..nq + nv]));
+        // Two bodies may approach each other.
+        self.near = FASTER * h * 2.0 * fastest;
+        work.detect(model, q, self.near)?;
         for k in 0..work.candidates.len() {
             let candidate = work.candidates[k];
             if !self.smooth.contacts.iter().any(|contact| contact.id == candidate.id) {
@@ -287,7 +300,8 @@ impl EventDriven {
     fn dip(&mut self, model: &Model<2>, h: f64, work: &mut Workspace<2>) -> Result<Option<f64>, StepError> {
         let (nq, nv) = (model.size().q, model.size().v);
         let (q, v) = (&self.rk.end[..nq], &self.rk.end[nq..nq + nv]);
-        work.detect(model, q, f64::INFINITY)?;
+        // What was that near may have gone as far.
+        work.detect(model, q, 2.0 * self.near)?;
         for k in 0..work.candidates.len() {
             let candidate = work.candidates[k];
             let Ok(at) = self.open.binary_search_by_key(&candidate.id, |open| open.id) else { continue };
@@ -299,13 +313,7 @@ impl EventDriven {
             if end_rate <= 0.0 {
                 continue;
             }
-            // The lowest point of the cubic with these ends.
-            let (a, b, da, db) = (gap, candidate.gap, h * rate, h * end_rate);
-            let (c2, c3) = (3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db);
-            let root = (c2 * c2 - 3.0 * c3 * da).max(0.0).sqrt();
-            // 3 c3 s² + 2 c2 s + da = 0, without a difference of like numbers.
-            let s = if c2 + root > 0.0 { -da / (c2 + root) } else { 0.5 };
-            let low = ((c3 * s + c2) * s + da) * s + a;
+            let (s, low) = GapCubic::new([gap, candidate.gap], [rate, end_rate], h).lowest();
             if s > 0.01 && s < 0.99 && low < -self.located.tolerance(q) {
                 return Ok(Some(s * h));
             }

@@ -1,6 +1,7 @@
 //! When the first of the events that are watched happens.
 
 use super::EventDriven;
+use crate::gap_cubic::GapCubic;
 use crate::moreau_jean_located::rate_at;
 use crate::{Model, StepError, Workspace};
 use teeter_detect::ContactId;
@@ -226,15 +227,7 @@ impl Watch {
     pub(super) fn cubic_zero(&self) -> f64 {
         let [a, b] = self.between;
         let h = b.tau - a.tau;
-        let (da, db) = (h * a.rate, h * b.rate);
-        let (c2, c3) = (3.0 * (b.value - a.value) - 2.0 * da - db, 2.0 * (a.value - b.value) + da + db);
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..CUBIC_HALVINGS {
-            let s = 0.5 * (low + high);
-            let value = ((c3 * s + c2) * s + da) * s + a.value;
-            *(if value > 0.0 { &mut low } else { &mut high }) = s;
-        }
-        a.tau + h * 0.5 * (low + high)
+        a.tau + h * GapCubic::new([a.value, b.value], [a.rate, b.rate], h).zero(CUBIC_HALVINGS)
     }
 
     fn learn(&mut self, known: Known) {

@@ -91,11 +91,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
     ) -> Result<f64, Mismatch> {
         for _ in 0..HALVINGS {
             let tau = 0.5 * (inside + past);
-            // The velocity changes evenly.
-            let part = 0.5 * tau / lasted;
-            let ends = from.v.iter().zip(&self.step.step.v_end);
-            self.v.iter_mut().zip(ends).for_each(|(v, (start, end))| *v = start + part * (end - start));
-            model.move_along(&from.q, &self.v, tau, &mut self.place);
+            self.place_at(model, from, lasted, tau);
             work.locate_past_ends(model, &self.place, &self.ids, &mut self.near, &mut self.rooms)?;
             let all_over = self.rooms.iter().all(|room| *room >= 0.0);
             *(if all_over { &mut inside } else { &mut past }) = tau;

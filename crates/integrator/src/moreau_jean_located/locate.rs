@@ -68,8 +68,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
 
     /// Attempts the step; if open contacts would end in their surface, only up to where the first
     /// of them touches. Returns that time beside the outcome of the attempt, which is left in the
-    /// step.
-    pub(super) fn locate(
+    /// step. Contacts that are inside only on the way aren't seen.
+    pub(super) fn locate_by_end(
         &mut self,
         model: &Model<D>,
         from: &State,

@@ -128,6 +128,10 @@ impl Bodies<2> for RestingBody {
         out.copy_from_slice(local);
     }
 
+    fn fastest(&self, _: &[f64]) -> f64 {
+        0.0
+    }
+
     fn rows(&self, _: u32, _: &[f64], _: &Vector2<f64>, _: &Frame<2>, _: &mut Rows<'_, 2>) -> usize {
         0
     }
