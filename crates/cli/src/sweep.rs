@@ -224,7 +224,11 @@ fn why_empty(output: &teeter_study::sweep::Output) -> String {
     match (output.summary_path(), output.column()) {
         (Some(path), _) => format!("summary.json has no value at {path}"),
         (None, Some(column)) => format!("trajectory.csv has no column {column}, or no row at that time"),
-        (None, None) => "there is no such value".to_owned(),
+        (None, None) => match output.spectrum_of() {
+            Some("") => "the scene has no record".to_owned(),
+            Some(of) => format!("the scene has no record at {of}, such as ground.motion.x"),
+            None => "there is no such value".to_owned(),
+        },
     }
 }
 

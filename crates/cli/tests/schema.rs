@@ -263,6 +263,7 @@ const BEYOND: &[&str] = &[
     "contact with nobody",
     "too much output",
     "accelerogram that is not there",
+    "product of a signal that is not there",
     "signal that is not defined",
     "a displacement that jumps",
     "force on a beam",

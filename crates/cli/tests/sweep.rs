@@ -209,6 +209,12 @@ fn what_is_wrong_in_a_sweep_file_is_told_with_its_place_and_a_remedy() {
             &["outputs.x.mx", "did you mean `max`?"],
         ),
         (
+            "spectrum",
+            "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n[outputs]\nx = { spectral_acceleration = \"0 s\" }\n\
+                y = { spectral_acceleration = \"2 m\" }\nz = { spectral_acceleration = \"1 s\", max = \"rocker.phi\" }\n",
+            &["outputs.x.spectral_acceleration", "not a period", "outputs.y", "a time (s) is expected", "outputs.z"],
+        ),
+        (
             "twice",
             "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n[zip]\nblock.rocker.tilt = [\"1 deg\"]\n",
             &["varies twice"],
@@ -279,6 +285,24 @@ fn what_is_wrong_in_a_sweep_file_is_told_with_its_place_and_a_remedy() {
 }
 
 #[test]
+fn a_scene_is_no_sweep_and_a_sweep_no_scene() {
+    let folder = study("confused", SWEEP);
+    let told = |arguments: &[&str]| {
+        let output = teeter(&folder, arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let scene = told(&["sweep", "rocking.toml"]);
+    assert!(scene.contains("this is a scene, not a sweep") && scene.contains("`teeter run`"), "{scene}");
+    for command in ["run", "check"] {
+        let sweep = told(&[command, "sweep.toml"]);
+        assert!(sweep.contains("this is a sweep, not a scene") && sweep.contains("`teeter sweep`"), "{sweep}");
+        assert!(!sweep.contains("did you mean") && sweep.matches("error:").count() == 1, "{sweep}");
+    }
+    assert!(!scene.contains("did you mean") && scene.matches("error:").count() == 1, "{scene}");
+}
+
+#[test]
 fn an_output_that_no_case_has_is_told() {
     let sweep = format!("{SWEEP}nothing = \"no.such.key\"\nnowhere = {{ max = \"rocker.psi\" }}\n");
     let folder = study("empty", &sweep);
@@ -291,7 +315,9 @@ fn an_output_that_no_case_has_is_told() {
 #[test]
 fn files_are_an_axis() {
     let sweep = "scene = \"scenes/shaken.toml\"\n[grid]\nground.motion.x.record = { files = \"records/*.csv\" }\n\
-        [outputs]\nlargest = { max_abs = \"b.x\" }\n";
+        [outputs]\nlargest = { max_abs = \"b.x\" }\nsa = { spectral_acceleration = \"0.5 s\" }\n\
+        same = { spectral_acceleration = \"500 ms\", of = \"ground.motion.x\" }\n\
+        none = { spectral_acceleration = \"0.5 s\", of = \"ground.motion.y\" }\n";
     let folder = study("files", sweep);
     std::fs::create_dir_all(folder.join("records")).unwrap();
     std::fs::create_dir_all(folder.join("scenes")).unwrap();
@@ -314,6 +340,40 @@ fn files_are_an_axis() {
     assert!(rows[1][1].ends_with("records/a.csv") && rows[2][1].ends_with("records/b.csv"), "{rows:?}");
     let moved = |row: &[String]| row[2].parse::<f64>().unwrap();
     assert!((moved(&rows[2]) / moved(&rows[1]) - 2.0).abs() < 1e-6, "it moves with the ground: {rows:?}");
+    for (row, size) in [(&rows[1], 1.0), (&rows[2], 2.0)] {
+        let found: f64 = row[3].parse().unwrap();
+        let exact = size * oscillator(0.5);
+        assert!((found / exact - 1.0).abs() < 1e-6, "{found} {exact}");
+        assert_eq!((&row[4], row[5].as_str()), (&row[3], ""));
+    }
+    let none = "`none` is empty in all cases: the scene has no record at ground.motion.y";
+    assert!(told.contains(none), "{told}");
+}
+
+/// ω² times the largest displacement of an oscillator of this period and 5 % damping, whose support is
+/// accelerated by one sine of 0.2 s, linear between 20 values, until that ends: by the classical Runge–Kutta method.
+fn oscillator(period: f64) -> f64 {
+    let value = |k: u32| (std::f64::consts::PI * 0.1 * f64::from(k)).sin();
+    let ground = |t: f64| {
+        let k = ((t / 0.01).floor() as u32).min(19);
+        let part = t / 0.01 - f64::from(k);
+        if t < 0.2 { value(k) + (value(k + 1) - value(k)) * part } else { 0.0 }
+    };
+    let omega = std::f64::consts::TAU / period;
+    let rate = |t: f64, [x, v]: [f64; 2]| [v, -ground(t) - 2.0 * 0.05 * omega * v - omega * omega * x];
+    let (h, mut state, mut largest) = (1e-5, [0.0, 0.0], 0.0_f64);
+    for k in 0..20_000_u32 {
+        let t = h * f64::from(k);
+        let after = |slope: [f64; 2], h: f64| [state[0] + h * slope[0], state[1] + h * slope[1]];
+        let a = rate(t, state);
+        let b = rate(t + 0.5 * h, after(a, 0.5 * h));
+        let c = rate(t + 0.5 * h, after(b, 0.5 * h));
+        let d = rate(t + h, after(c, h));
+        let mean = [0, 1].map(|i| (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]) / 6.0);
+        state = after(mean, h);
+        largest = largest.max(state[0].abs());
+    }
+    omega * omega * largest
 }
 
 /// The folder of sweeps of the project.

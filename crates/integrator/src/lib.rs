@@ -142,7 +142,7 @@ pub use registry::{SchemeEntry, schemes};
 pub use resolved::{Resolved, ResolvedSettings};
 pub use run::{Ended, Observer, ObserverError, Plan, RunError, Unsolved, Until, run};
 pub use scheme::{Scheme, SettingError, StepError};
-pub use signal::{Chirp, Formula, Given, Growth, Motion, Signal, SignalError, Sum, Table};
+pub use signal::{Chirp, Formula, Given, Growth, Motion, Product, Signal, SignalError, Sum, Table};
 pub use spring::SpringStep;
 pub use stage::{ContactError, ContactStage, Look, Over, Rule};
 pub use state::{STEP_ROUNDING, State, StateError, StepSpan, Tally, WarmStart};

@@ -1,13 +1,16 @@
 //! Time histories of loads and of prescribed motion (`docs/signals.md`).
 //!
 //! A [`Signal`] is a number without unit that depends on time, with its rate and its first two
-//! integrals, each in closed form (those of a [`Chirp`] by quadrature to rounding): whichever of
+//! integrals, each in closed form (those of a [`Chirp`] or a [`Product`] by quadrature to rounding):
+//! whichever of
 //! displacement, velocity and acceleration is given, a [`Motion`] has the others without summing over
 //! steps.
 
 mod chirp;
+mod compensated;
 mod formula;
 mod motion;
+mod product;
 mod sum;
 mod table;
 pub(crate) mod window;
@@ -15,6 +18,7 @@ pub(crate) mod window;
 pub use chirp::{Chirp, Growth};
 pub use formula::Formula;
 pub use motion::{Given, Motion};
+pub use product::Product;
 pub use sum::Sum;
 pub use table::Table;
 use window::Moments;
@@ -83,6 +87,13 @@ pub trait Signal: std::fmt::Debug + Send + Sync {
     /// jumps; infinity, the default, for none. A scheme of high order ends a step there.
     fn next_break(&self, t: f64) -> f64 {
         let _ = t;
+        f64::INFINITY
+    }
+
+    /// The period of its fastest oscillation, s; infinity, the default, if between its breaks it is
+    /// a polynomial. A [`Product`] integrates over quarters of it: override it for a signal that
+    /// oscillates.
+    fn shortest_period(&self) -> f64 {
         f64::INFINITY
     }
 

@@ -59,6 +59,7 @@ pub mod scene;
 mod scene_checks;
 mod separators;
 mod signal_resolution;
+mod signal_table;
 pub mod simulation;
 mod stable_step;
 mod static_start;
@@ -146,6 +147,21 @@ impl ParsedScene {
             found.0.extend(resolve::mistakes(&document, read));
             decode::in_order(&mut found, sets);
         }
+        if let Some(sweep) = is_a_sweep(&found) {
+            return Err(sweep.into());
+        }
         Err(found)
     }
+}
+
+/// One message instead of all that is wrong with a sweep file, read as a scene.
+fn is_a_sweep(found: &diagnostic::Diagnostics) -> Option<diagnostic::Diagnostic> {
+    let at = |name: &str| found.iter().find(|finding| finding.path.split('.').next() == Some(name));
+    let scene = at("scene").filter(|finding| finding.set.is_none())?;
+    ["grid", "zip", "random", "find", "outputs"].into_iter().find_map(at)?;
+    let mut finding = scene.clone();
+    finding.did_you_mean = None;
+    finding.rule = "this is a sweep, not a scene: it names the scene whose keys vary".to_owned();
+    finding.remedy = Some("run it with `teeter sweep`, or give the scene that it names".to_owned());
+    Some(finding)
 }

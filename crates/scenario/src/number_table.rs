@@ -7,7 +7,6 @@ use crate::dimension::Dimension;
 use crate::keys::Range;
 use crate::quantity;
 use crate::separators::with_commas;
-use teeter_integrator::{SignalError, Table};
 
 /// Largest file accepted, bytes.
 pub const LARGEST_RECORD: usize = 64_000_000;
@@ -15,44 +14,10 @@ pub const LARGEST_RECORD: usize = 64_000_000;
 /// Most rows: a signal takes 32 bytes for each.
 pub const MOST_ROWS: usize = 2_000_000;
 
-/// Shortest time between two rows, s, as for keys that are times.
-const SHORTEST: f64 = 1e-15;
-
-/// The columns of a signal's table. Its value is multiplied by an amplitude, which has the unit.
-const SIGNAL: &[Dimension] = &[Dimension::TIME, Dimension::NONE];
-
 /// The columns of a table, and the line of each row.
 pub(crate) struct NumberColumns {
     pub(crate) columns: Vec<Vec<f64>>,
     pub(crate) lines: Vec<u64>,
-}
-
-/// Reads a table of two columns, t in s and value, with `start` added to its times.
-///
-/// # Errors
-/// What is wrong, with the line.
-pub(crate) fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
-    let NumberColumns { columns, lines } = columns(bytes, 2..=2, "two, t and value", SIGNAL)?;
-    let [mut times, values] = <[Vec<f64>; 2]>::try_from(columns).unwrap_or_default();
-    times.iter_mut().for_each(|t| *t += start);
-    // Keys accept no shorter times, and rates over them would exceed the range of numbers.
-    if let Some(row) = times.windows(2).position(|t| t[1] > t[0] && t[1] - t[0] < SHORTEST) {
-        let line = lines.get(row + 1).copied().unwrap_or_default();
-        return Err(format!(
-            "line {line}: {:e} s after the row before, below {SHORTEST:e} s, the limit of times",
-            times[row + 1] - times[row]
-        ));
-    }
-    Table::new(times, values).map_err(|error| match error {
-        SignalError::Row { row, what } => {
-            let line = row.checked_sub(1).and_then(|row| lines.get(row)).copied().unwrap_or_default();
-            format!("line {line}: {what}")
-        }
-        SignalError::Rows(rows) => {
-            format!("it has {rows} row{} of numbers, but a table needs two or more", if rows == 1 { "" } else { "s" })
-        }
-        error => error.to_string(),
-    })
 }
 
 /// Reads a table of numbers: separated by commas, semicolons, tabs or blanks (with any but the first,
@@ -129,16 +94,18 @@ pub(crate) fn columns(
     Ok(NumberColumns { columns, lines })
 }
 
-/// Reads the points of a line from two columns, x and y in m: the only two, or those named by their
-/// headings, or by their numbers from 1. `unit` is a unit in which 1 m is `per_metre`, for columns
-/// whose heading has none.
+/// Reads two columns of a table: the only two, or those named by their headings, or by their numbers
+/// from 1. `described` describes both in messages. `unit` is a unit for those of the first `of`
+/// columns whose heading has none, and how many of it make an SI unit.
 ///
 /// # Errors
 /// What is wrong, with the line.
-pub(crate) fn points(
+pub(crate) fn two_columns(
     bytes: &[u8],
     names: Option<[&str; 2]>,
+    (described, dimensions): (&str, &[Dimension]),
     unit: Option<(&str, f64)>,
+    of: usize,
 ) -> Result<NumberColumns, String> {
     if bytes.len() > LARGEST_RECORD {
         return Err(format!("larger than {} MB, the limit of a table", LARGEST_RECORD / 1_000_000));
@@ -155,20 +122,32 @@ pub(crate) fn points(
         Some([x, y]) => [column_named(x, cells)?, column_named(y, cells)?],
     };
     if let (Some((line, _)), Some((unit, _))) = (&heading, unit)
-        && let Some(own) = chosen.iter().find_map(|k| unit_of(cells.get(*k)?.trim()))
+        && let Some(own) = chosen.iter().take(of).find_map(|k| unit_of(cells.get(*k)?.trim()))
     {
         let own = printable(own);
         return Err(format!("line {line}: the heading has the unit `{own}`, so `{unit}` must be left out"));
     }
-    const LENGTHS: &[Dimension] = &[Dimension::LENGTH, Dimension::LENGTH];
     let mut found = match names {
-        None => columns(bytes, 2..=2, "two, x and y", LENGTHS)?,
-        Some(_) => columns(chosen_columns(&text, chosen)?.as_bytes(), 2..=2, "two, x and y", LENGTHS)?,
+        None => columns(bytes, 2..=2, described, dimensions)?,
+        Some(_) => columns(chosen_columns(&text, chosen)?.as_bytes(), 2..=2, described, dimensions)?,
     };
-    if let Some((_, per_metre)) = unit {
-        found.columns.iter_mut().flatten().for_each(|x| *x /= per_metre);
+    if let Some((_, per_si_unit)) = unit {
+        found.columns.iter_mut().take(of).flatten().for_each(|x| *x /= per_si_unit);
     }
     Ok(found)
+}
+
+/// Reads the points of a line from two columns, x and y in m, as [`two_columns`] does; `unit` is one of
+/// both.
+///
+/// # Errors
+/// What is wrong, with the line.
+pub(crate) fn points(
+    bytes: &[u8],
+    names: Option<[&str; 2]>,
+    unit: Option<(&str, f64)>,
+) -> Result<NumberColumns, String> {
+    two_columns(bytes, names, ("two, x and y", &[Dimension::LENGTH, Dimension::LENGTH]), unit, 2)
 }
 
 /// Whether a line holds cells.
@@ -358,6 +337,11 @@ fn number(cell: &[u8]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use teeter_integrator::Table;
+
+    fn read(bytes: &[u8], start: f64) -> Result<Table, String> {
+        crate::signal_table::of_columns(bytes, start, None, None)
+    }
     use teeter_integrator::Signal;
 
     #[test]

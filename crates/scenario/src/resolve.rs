@@ -9,6 +9,7 @@ mod crowd;
 mod faces;
 mod ground;
 mod jitter;
+mod made_of_signals;
 mod many;
 mod motions;
 pub(crate) mod names;

@@ -11,7 +11,9 @@ pub(crate) use crowd::pairs_between;
 pub use crowd::{Crowd, CrowdContact};
 pub(crate) use display::most_used;
 pub use display::{AngleUnit, Display, LengthUnit};
-pub use history::{AxisScene, ForceScene, History, LoadKind, LoadScene, MotionScene, RecordScene, SignalScene};
+pub use history::{
+    AxisScene, ForceScene, History, LoadKind, LoadScene, MotionScene, ProductScene, RecordScene, SignalScene,
+};
 pub use reduction::Reduction;
 
 use nalgebra::Vector2;
@@ -109,7 +111,7 @@ impl Scene {
     pub fn records(&self) -> impl Iterator<Item = &Arc<RecordScene>> {
         self.motions().flat_map(|(_, motion)| motion.0.iter().flatten()).filter_map(|axis| match &axis.history {
             History::Record(record) => Some(record),
-            History::Formula(_) | History::Chirp(_) | History::Table(_) | History::Sum(_) => None,
+            History::Formula(_) | History::Chirp(_) | History::Table(_) | History::Sum(_) | History::Product(_) => None,
         })
     }
 

@@ -59,6 +59,7 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> (Vec<Diagnostic>, Vec<Di
             continue;
         }
         warnings.extend(match &signal.history {
+            History::Product(_) => of_product(&path, signal.history.swings(), used.in_the_mean(), scene, document),
             History::Formula(_) | History::Chirp(_) => {
                 swing(&path, signal.history.swings(), used.in_the_mean(), scene, document)
             }
@@ -124,20 +125,22 @@ fn used<'a>(scene: &Scene, document: &'a Document) -> BTreeMap<&'a str, Used> {
             _ => {}
         }
     }
-    // What multiplies a sum multiplies its terms; a sum's term may be a sum.
-    let sums = || scene.signals.iter().filter(|signal| matches!(signal.history, History::Sum(_)));
-    let mut left: Vec<&str> = sums().map(|sum| sum.name.as_str()).collect();
-    while let Some(sum) = left.pop() {
-        let of_sum = used.get(sum).copied();
-        for term in document.words(&format!("signal.{sum}.terms")).unwrap_or_default() {
-            let before = used.get(term.as_str()).copied();
-            let of_term = used.entry(term).or_default();
-            if let Some(of_sum) = of_sum {
-                of_term.motion |= of_sum.motion;
-                of_term.load |= of_sum.load;
+    // What multiplies a sum or product multiplies its parts, which may be such themselves.
+    let is_made = |history: &History| matches!(history, History::Sum(_) | History::Product(_));
+    let made = scene.signals.iter().filter(|signal| is_made(&signal.history));
+    let mut left: Vec<&str> = made.map(|signal| signal.name.as_str()).collect();
+    while let Some(name) = left.pop() {
+        let of_whole = used.get(name).copied();
+        let parts = ["terms", "factors"].map(|key| document.words(&format!("signal.{name}.{key}")));
+        for part in parts.into_iter().flatten().flatten() {
+            let before = used.get(part.as_str()).copied();
+            let of_part = used.entry(part).or_default();
+            if let Some(of_whole) = of_whole {
+                of_part.motion |= of_whole.motion;
+                of_part.load |= of_whole.load;
             }
-            if before.map(|used| (used.motion, used.load)) != Some((of_term.motion, of_term.load)) {
-                left.push(term);
+            if before.map(|used| (used.motion, used.load)) != Some((of_part.motion, of_part.load)) {
+                left.push(part);
             }
         }
     }
@@ -165,6 +168,7 @@ fn is_silent(history: &History, end: f64) -> bool {
             from >= end || until <= 0.0
         }
         History::Sum(terms) => terms.iter().all(|(_, term)| is_silent(term, end)),
+        History::Product(product) => product.factors().iter().any(|factor| is_silent(factor, end)),
         History::Table(_) | History::Record(_) => history.table().is_none_or(|table| {
             table.value(0.0) == 0.0
                 && table.value(end) == 0.0
@@ -218,6 +222,26 @@ fn swing(
     };
     let remedy = format!("use a step of at most {}", seconds(period / STEPS_A_SWING, 2));
     Some(document.error(&key, rule, remedy).as_warning())
+}
+
+/// Warns of a product with less than ten steps per period: the frequencies of its factors add.
+fn of_product(
+    path: &str,
+    swings: Option<(f64, [f64; 2])>,
+    in_the_mean: &str,
+    scene: &Scene,
+    document: &Document,
+) -> Option<Diagnostic> {
+    let step = scene.time.step;
+    let (period, _) = swings.filter(|(period, _)| *period < STEPS_A_SWING * step * (1.0 - 1e-9))?;
+    let rule = format!(
+        "the frequencies of its factors add: its shortest period of {} is {:.2} steps of {}: {in_the_mean}",
+        seconds(period, 4),
+        period / step,
+        seconds(step, 4)
+    );
+    let remedy = format!("use a step of at most {}", seconds(period / STEPS_A_SWING, 2));
+    Some(document.error(&format!("{path}.factors"), rule, remedy).as_warning())
 }
 
 /// Warns of a table with peaks between the ends of steps.
@@ -279,12 +303,6 @@ fn turns(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let spins = scene.blocks.iter().map(|block| far(format!("block.{}.spin", block.name), block.spin));
     let driven = |(path, motion): (String, &MotionScene)| {
         let axis = motion.0[2].as_ref()?;
-        let most = |history: &History| match history {
-            History::Table(table) => table.rows().map(|(_, y)| y.abs()).fold(0.0, f64::max),
-            // Records prescribe no rotation.
-            History::Record(_) => 0.0,
-            _ => 1.0,
-        };
         let swing = |history: &History| history.swings().map_or(0.0, |(period, _)| std::f64::consts::TAU / period);
         let sum = |of: &dyn Fn(&History) -> f64| -> f64 {
             axis.history.terms().map(|(factor, term)| factor.abs() * of(term)).sum()
@@ -297,6 +315,19 @@ fn turns(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         far(format!("{path}.{key}"), axis.amplitude * rate)
     };
     spins.chain(scene.motions().map(driven)).flatten().take(LISTED).collect()
+}
+
+/// A bound of the absolute values of a history.
+fn most(history: &History) -> f64 {
+    let bound = |history: &History| -> f64 { history.terms().map(|(factor, term)| factor.abs() * most(term)).sum() };
+    match history {
+        History::Table(table) => table.rows().map(|(_, y)| y.abs()).fold(0.0, f64::max),
+        // Records prescribe no rotation.
+        History::Record(_) => 0.0,
+        History::Product(product) => product.factors().iter().map(bound).fold(product.scale().abs(), |a, b| a * b),
+        History::Formula(_) | History::Chirp(_) => 1.0,
+        History::Sum(_) => bound(history),
+    }
 }
 
 /// Warns of displacements that change faster than steps can resolve, as contacts depend on their
@@ -313,7 +344,7 @@ fn rises(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
                 }
                 History::Table(table) => fastest_rise(table, scene),
                 // Records are accelerations; chirps have their own warning.
-                History::Record(_) | History::Chirp(_) | History::Sum(_) => None,
+                History::Record(_) | History::Chirp(_) | History::Sum(_) | History::Product(_) => None,
             });
             Some((key, lasts.min_by(f64::total_cmp)?))
         });

@@ -100,7 +100,12 @@ words! {
         Chirp = "chirp",
         Table = "table",
         Sum = "sum",
+        Product = "product",
     }
+    /// Unit of the times of a table.
+    TimeUnit { Second = "s", Millisecond = "ms", Microsecond = "us", Minute = "min" }
+    /// The values of a table before its first row and after its last.
+    Outside { Hold = "hold", Zero = "zero" }
     /// How the frequency of a chirp grows.
     Growth { Linear = "linear", Logarithmic = "logarithmic" }
 }
@@ -162,6 +167,8 @@ mod tests {
         each_means_something_of_its_own::<Shape>();
         each_means_something_of_its_own::<History>();
         each_means_something_of_its_own::<Growth>();
+        each_means_something_of_its_own::<TimeUnit>();
+        each_means_something_of_its_own::<Outside>();
         each_means_something_of_its_own::<Baseline>();
         each_means_something_of_its_own::<RecordUnit>();
         each_means_something_of_its_own::<LengthUnit>();

@@ -4,6 +4,7 @@
 //! exact to rounding, and summed once, when the chirp is made. So value, rate and integrals are
 //! those of the same function, whatever the step.
 
+use super::compensated::Compensated;
 use super::formula::{finite, positive};
 use super::window::{self, Moments, Pieces, sinc};
 use super::{Signal, SignalError, from_zero};
@@ -254,27 +255,13 @@ impl Signal for Chirp {
         ends.into_iter().find(|(t, argument)| *t > 0.0 && argument.sin().abs() > rounding(*argument)).map(|(t, _)| t)
     }
 
+    fn shortest_period(&self) -> f64 {
+        // Over a few panels its frequency must not change much either.
+        self.swings().0.min(PER_PERIOD / LEAST * self.duration)
+    }
+
     fn next_break(&self, t: f64) -> f64 {
         [self.start, self.settles_at()].into_iter().find(|at| *at > t).unwrap_or(f64::INFINITY)
-    }
-}
-
-/// A sum with the rounding errors of its additions (Neumaier's).
-#[derive(Default)]
-struct Compensated {
-    sum: f64,
-    lost: f64,
-}
-
-impl Compensated {
-    fn add(&mut self, term: f64) {
-        let sum = self.sum + term;
-        self.lost += if self.sum.abs() >= term.abs() { (self.sum - sum) + term } else { (term - sum) + self.sum };
-        self.sum = sum;
-    }
-
-    fn total(&self) -> f64 {
-        self.sum + self.lost
     }
 }
 

@@ -319,6 +319,15 @@ impl Signal for Formula {
         breaks.into_iter().map(|after| self.start + after).find(|at| *at > t).unwrap_or(never)
     }
 
+    fn shortest_period(&self) -> f64 {
+        match self.shape {
+            Shape::Constant | Shape::Ramp { .. } => f64::INFINITY,
+            Shape::Sine { omega, .. } => TAU / omega,
+            // A quarter of it is short enough for the quadrature of [`Self::pieces`].
+            Shape::Ricker { rate } => rate.recip(),
+        }
+    }
+
     fn second_rate(&self, t: f64) -> f64 {
         let tau = t - self.start;
         match self.shape {

@@ -78,6 +78,10 @@ impl Signal for Sum {
         jumps.min_by(f64::total_cmp)
     }
 
+    fn shortest_period(&self) -> f64 {
+        self.terms.iter().map(|(_, signal)| signal.shortest_period()).fold(f64::INFINITY, f64::min)
+    }
+
     fn next_break(&self, t: f64) -> f64 {
         self.terms.iter().map(|(_, signal)| signal.next_break(t)).fold(f64::INFINITY, f64::min)
     }

@@ -4,7 +4,7 @@ use super::window::{self, Moments, Pieces};
 use super::{Signal, SignalError, from_zero};
 
 /// A time history by rows (time, value): linear between them, the first value before and the last
-/// value after.
+/// value after, or 0 ([`Table::zero_outside`]).
 ///
 /// ```
 /// use teeter_integrator::{Signal, Table};
@@ -22,6 +22,8 @@ pub struct Table {
     /// The integral from the first row to each row, and the integral of that.
     once: Vec<f64>,
     twice: Vec<f64>,
+    /// Whether it is 0 before the first row and from the last on.
+    zero_outside: bool,
 }
 
 impl Table {
@@ -60,7 +62,19 @@ impl Table {
             once.push(first);
             twice.push(second);
         }
-        Ok(Self { times, values, once, twice })
+        Ok(Self { times, values, once, twice, zero_outside: false })
+    }
+
+    /// The same, but 0 before the first row and from the last on: it jumps where their values aren't.
+    #[must_use]
+    pub fn zero_outside(self) -> Self {
+        Self { zero_outside: true, ..self }
+    }
+
+    /// Whether it is 0 before the first row and from the last on.
+    #[must_use]
+    pub fn is_zero_outside(&self) -> bool {
+        self.zero_outside
     }
 
     /// Its first and last row, (time, value).
@@ -76,16 +90,17 @@ impl Table {
         self.times.iter().copied().zip(self.values.iter().copied())
     }
 
-    /// The row at which the piece with `t` starts, the time since then, and the slope of the piece.
-    fn piece(&self, t: f64) -> (usize, f64, f64) {
+    /// The row at which the piece with `t` starts, the time since then, and value and slope of the piece
+    /// at its start.
+    fn piece(&self, t: f64) -> (usize, f64, [f64; 2]) {
         let after = self.times.partition_point(|row| *row <= t);
         let row = after.saturating_sub(1);
-        let slope = if after == 0 || after == self.times.len() {
-            0.0
+        let line = if after > 0 && after < self.times.len() {
+            [self.values[row], (self.values[after] - self.values[row]) / (self.times[after] - self.times[row])]
         } else {
-            (self.values[after] - self.values[row]) / (self.times[after] - self.times[row])
+            [if self.zero_outside { 0.0 } else { self.values[row] }, 0.0]
         };
-        (row, t - self.times[row], slope)
+        (row, t - self.times[row], line)
     }
 
     /// Calls `each` for the linear pieces of [from, to], with times and values at their ends.
@@ -96,6 +111,7 @@ impl Table {
         loop {
             let end = self.times.get(after).map_or(to, |row| row.min(to));
             let value = |t: f64| match after {
+                _ if self.zero_outside && (after == 0 || after > last) => 0.0,
                 0 => self.values[0],
                 _ if after > last => self.values[last],
                 _ => {
@@ -112,24 +128,29 @@ impl Table {
     }
 
     fn antiderivatives(&self, t: f64) -> (f64, f64) {
-        let (row, tau, slope) = self.piece(t);
-        let (y, once) = (self.values[row], self.once[row]);
+        let (row, tau, [y, slope]) = self.piece(t);
+        let once = self.once[row];
         (once + tau * (y + 0.5 * slope * tau), self.twice[row] + tau * (once + tau * (0.5 * y + slope * tau / 6.0)))
     }
 }
 
 impl Signal for Table {
     fn value(&self, t: f64) -> f64 {
-        let (row, tau, slope) = self.piece(t);
-        self.values[row] + slope * tau
+        let (_, tau, [y, slope]) = self.piece(t);
+        y + slope * tau
     }
 
     fn rate(&self, t: f64) -> f64 {
-        self.piece(t).2
+        self.piece(t).2[1]
     }
 
     fn next_break(&self, t: f64) -> f64 {
         self.times.get(self.times.partition_point(|row| *row <= t)).copied().unwrap_or(f64::INFINITY)
+    }
+
+    fn jump(&self) -> Option<f64> {
+        let jumps = |(t, value): &(f64, f64)| self.zero_outside && *t > 0.0 && *value != 0.0;
+        self.ends().into_iter().find(jumps).map(|(t, _)| t)
     }
 
     fn second_rate(&self, _: f64) -> f64 {
@@ -154,7 +175,7 @@ impl Signal for Table {
         let (first, last) = (self.piece(from), self.piece(to));
         // Within a single piece avoid the rounding of a difference.
         if first.0 == last.0 && first.2 == last.2 {
-            return first.2;
+            return first.2[1];
         }
         (self.value(to) - self.value(from)) / (to - from)
     }
@@ -182,6 +203,25 @@ mod tests {
             let times = vec![start, start + 0.3, start + 0.35, start + 1.3];
             check(&Table::new(times.clone(), vec![0.2, -1.0, 3.0, 0.5]).unwrap(), &times, 3.0);
         }
+    }
+
+    #[test]
+    fn outside_it_is_zero_if_asked_for() {
+        let values = vec![0.2, -1.0, 3.0, 0.5];
+        for start in [-1.0, 0.0, 0.4] {
+            let times = vec![start, start + 0.3, start + 0.35, start + 1.3];
+            let table = Table::new(times.clone(), values.clone()).unwrap();
+            assert_eq!((table.value(9.0), table.jump()), (0.5, None));
+            let table = table.zero_outside();
+            check(&table, &times, 3.0);
+            assert_eq!([start - 0.1, start, start + 1.3].map(|t| table.value(t)), [0.0, 0.2, 0.0]);
+            assert_eq!(table.jump(), Some(if start > 0.0 { start } else { start + 1.3 }));
+            // Over the whole: the area of the rows.
+            let area = 0.3 * -0.4 + 0.05 * 1.0 + 0.95 * 1.75;
+            assert!((table.mean(start - 1.0, start + 3.0) * 4.0 - area).abs() < 1e-15);
+        }
+        let closed = Table::new(vec![0.0, 1.0, 2.0], vec![0.0, 1.0, 0.0]).unwrap().zero_outside();
+        assert_eq!(closed.jump(), None);
     }
 
     #[test]

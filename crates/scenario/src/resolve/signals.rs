@@ -1,146 +1,25 @@
 //! Resolves signals: by formula, or from a file.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::Resolver;
-use crate::number_table;
 use crate::scene::{History, SignalScene};
+use crate::signal_table;
 use crate::words;
 use teeter_integrator::{Chirp, Formula, Growth, SignalError};
 
 /// A formula, or what is wrong with its numbers.
 type FormulaResult = Result<Formula, SignalError>;
 
-/// How deep sums may be nested.
-const DEEPEST: usize = 32;
-
-/// Most signals in a sum, those of its sums included.
-const MOST_TERMS: usize = 500;
-
-/// Largest factor of a signal in a sum, as of all numbers in scenes.
-const LARGEST_FACTOR: f64 = 1e12;
-
-/// How far the sums of a scene are resolved.
-struct Sums {
-    /// The signals by number: all but the sums, then the sums as well.
-    signals: Vec<Option<SignalScene>>,
-    /// The terms of each sum.
-    terms: BTreeMap<usize, Vec<String>>,
-    /// The factors of the signals in each sum that is resolved; `None` if it is wrong.
-    flat: BTreeMap<usize, Option<BTreeMap<usize, f64>>>,
-    /// The sums that are being resolved, each a term of the one before.
-    open: Vec<usize>,
-}
-
 impl Resolver<'_, '_> {
-    /// All signals, in the order of the scene; sums are resolved last.
-    pub(super) fn all_signals(&mut self) -> Vec<Option<SignalScene>> {
-        let names = self.doc.names("signal");
-        let mut terms = BTreeMap::new();
-        let mut signals = Vec::new();
-        for (number, name) in names.iter().enumerate() {
-            let path = format!("signal.{name}.terms");
-            if self.doc.text(&format!("signal.{name}.shape")) != Some("sum") {
-                signals.push(self.signal(name));
-                continue;
-            }
-            signals.push(None);
-            if let Some(given) = self.required(&path, self.doc.words(&path)) {
-                terms.insert(number, given.to_vec());
-            }
-        }
-        let mut sums = Sums { signals, terms, flat: BTreeMap::new(), open: Vec::new() };
-        let numbers: Vec<usize> = sums.terms.keys().copied().collect();
-        for number in &numbers {
-            self.sum(*number, &names, &mut sums);
-        }
-        for number in numbers {
-            let Some(Some(flat)) = sums.flat.remove(&number) else { continue };
-            let history = flat.iter().map(|(term, factor)| {
-                let signal = sums.signals.get(*term)?.as_ref()?;
-                Some((*factor, signal.history.clone()))
-            });
-            // A term that is wrong has its own message.
-            let Some(history) = history.collect::<Option<Arc<[_]>>>() else { continue };
-            if let Some(scale) = self.scale(names[number]) {
-                let name = names[number].to_owned();
-                sums.signals[number] = Some(SignalScene { name, history: History::Sum(history), scale });
-            }
-        }
-        sums.signals
-    }
-
-    /// The factors of the signals in a sum.
-    fn sum(&mut self, number: usize, names: &[&str], sums: &mut Sums) -> Option<BTreeMap<usize, f64>> {
-        if let Some(known) = sums.flat.get(&number) {
-            return known.clone();
-        }
-        sums.open.push(number);
-        let flat = self.factors(number, names, sums);
-        sums.open.pop();
-        sums.flat.insert(number, flat.clone());
-        flat
-    }
-
-    fn factors(&mut self, number: usize, names: &[&str], sums: &mut Sums) -> Option<BTreeMap<usize, f64>> {
-        let path = format!("signal.{}.terms", names[number]);
-        let mut factors = BTreeMap::new();
-        let mut good = true;
-        for name in sums.terms.get(&number)?.clone() {
-            let Some(term) = self.signals.get(name.as_str()).copied() else {
-                self.not_defined(&path, &name);
-                good = false;
-                continue;
-            };
-            if let Some(at) = sums.open.iter().position(|open| *open == term) {
-                let around: Vec<String> = sums.open[at..].iter().map(|k| format!("`{}`", names[*k])).collect();
-                let rule = format!("the sums add each other: {} → `{name}`", around.join(" → "));
-                self.error(&path, rule, format!("leave `{name}` out, or add signals that don't contain this one"));
-                good = false;
-                continue;
-            }
-            if sums.open.len() >= DEEPEST && sums.terms.contains_key(&term) {
-                let rule = format!("sums of sums, {} deep, but {DEEPEST} is the limit", DEEPEST + 1);
-                self.error(&path, rule, "add the signals themselves instead of their sums");
-                return None;
-            }
-            let (inner, scale) = if sums.terms.contains_key(&term) {
-                (self.sum(term, names, sums), self.scale(&name))
-            } else {
-                let known = sums.signals.get(term).and_then(Option::as_ref);
-                (known.map(|_| BTreeMap::from([(term, 1.0)])), known.map(|signal| signal.scale))
-            };
-            // What is wrong with a term is reported there.
-            let (Some(inner), Some(scale)) = (inner, scale) else {
-                good = false;
-                continue;
-            };
-            for (leaf, factor) in inner {
-                *factors.entry(leaf).or_insert(0.0) += scale * factor;
-            }
-        }
-        if factors.len() > MOST_TERMS {
-            let rule = format!("it adds {} signals, but {MOST_TERMS} is the limit", factors.len());
-            self.error(&path, rule, "put the smaller ones into a table of their values (shape = \"table\")");
-            return None;
-        }
-        if let Some((leaf, factor)) = factors.iter().find(|(_, factor)| factor.abs() > LARGEST_FACTOR) {
-            let rule = format!("its factor of `{}` is {factor:e}, over {LARGEST_FACTOR:e}", names[*leaf]);
-            self.error(&path, rule, "use smaller scales, and larger amplitudes where the sum is used");
-            return None;
-        }
-        good.then_some(factors)
-    }
-
     /// The factor of a signal. It has no default in the table of keys, so that scenes as run say no
     /// more than before.
-    fn scale(&mut self, name: &str) -> Option<f64> {
+    pub(super) fn scale(&mut self, name: &str) -> Option<f64> {
         let path = format!("signal.{name}.scale");
         if self.doc.has(&path) { self.number(&path) } else { Some(1.0) }
     }
 
-    fn signal(&mut self, name: &str) -> Option<SignalScene> {
+    pub(super) fn signal(&mut self, name: &str) -> Option<SignalScene> {
         let path = format!("signal.{name}");
         let history = match self.choice(&format!("{path}.shape"))? {
             words::History::Table => History::Table(Arc::new(self.table(&path)?)),
@@ -152,7 +31,7 @@ impl Resolver<'_, '_> {
             words::History::Ricker => self.formula(&path, Self::ricker)?,
             words::History::Chirp => self.chirp(&path)?,
             // Resolved after all others.
-            words::History::Sum => return None,
+            words::History::Sum | words::History::Product => return None,
             words::History::Harmonic => {
                 self.formula(&path, |this, path| this.with_frequency(path, Formula::harmonic))?
             }
@@ -242,20 +121,46 @@ impl Resolver<'_, '_> {
     }
 
     fn table(&mut self, path: &str) -> Option<teeter_integrator::Table> {
-        let (key, start) = (format!("{path}.file"), self.quantity(&format!("{path}.start")));
-        let file = self.word(&key)?;
+        let at = |key: &str| format!("{path}.{key}");
+        let doc = self.doc;
+        let start = self.quantity(&at("start"));
+        let file = self.word(&at("file"));
+        let given = |key: &str| doc.is_given(&at(key)) || doc.is_refused(&at(key));
+        let unit: Option<words::TimeUnit> =
+            if given("time_unit") { Some(self.choice(&at("time_unit"))?) } else { None };
+        if let Some(key) = ["columns", "time_unit"].into_iter().find(|key| given("step") && given(key)) {
+            self.error(&at(key), "with step the file has one column, of values alone", "leave out this key or step");
+            return None;
+        }
+        let (start, file) = (start?, file?);
         let bytes = match self.file(&file) {
             Ok(bytes) => bytes,
             Err(why) => {
-                self.error(&key, why, "paths are relative to the scene's file");
+                self.error(&at("file"), why, "paths are relative to the scene's file");
                 return None;
             }
         };
-        match number_table::read(&bytes, start?) {
-            Ok(table) => Some(table),
+        let read = match doc.quantity(&at("step")) {
+            Some(step) => signal_table::of_values(&bytes, start, step),
+            None if given("step") => return None,
+            None => {
+                let unit = unit.and_then(|unit| Some((doc.text(&at("time_unit"))?, unit.per_second())));
+                signal_table::of_columns(&bytes, start, doc.text_pair(&at("columns")), unit)
+            }
+        };
+        match read {
+            Ok(table) => Some(match self.choice(&at("outside"))? {
+                words::Outside::Hold => table,
+                words::Outside::Zero => table.zero_outside(),
+            }),
+            Err(why) if given("step") => {
+                let remedy = "give one column of values, with one row for each step";
+                self.error(&at("file"), why, remedy);
+                None
+            }
             Err(why) => {
                 let remedy = "give two columns, t in s and value, with one row for each time, in ascending order";
-                self.error(&key, why, remedy);
+                self.error(&at("file"), why, remedy);
                 None
             }
         }
@@ -266,6 +171,9 @@ impl Resolver<'_, '_> {
     pub(super) fn check_table_covers_run(&mut self, signals: &[Option<SignalScene>], end: f64) {
         for signal in signals.iter().flatten() {
             let History::Table(table) = &signal.history else { continue };
+            if table.is_zero_outside() {
+                continue;
+            }
             let [(first, before), (last, after)] = table.ends();
             let path = format!("signal.{}.file", signal.name);
             let mut warn = |rule: String, remedy: &str| {
@@ -281,6 +189,18 @@ impl Resolver<'_, '_> {
                 let rule = format!("the table begins at {first} s: its first value, {before}, is used before that");
                 warn(rule, "add rows from 0 s on, or let the first value be 0");
             }
+        }
+    }
+}
+
+impl words::TimeUnit {
+    /// How many make a second.
+    const fn per_second(self) -> f64 {
+        match self {
+            Self::Second => 1.0,
+            Self::Millisecond => 1e3,
+            Self::Microsecond => 1e6,
+            Self::Minute => 1.0 / 60.0,
         }
     }
 }

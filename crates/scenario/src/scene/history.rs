@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use teeter_integrator::{Chirp, Formula, Given, Motion, Signal, SignalError, Sum, Table};
+use teeter_integrator::{Chirp, Formula, Given, Motion, Product, Signal, SignalError, Sum, Table};
 
 /// A time history.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +17,8 @@ pub enum History {
     Record(Arc<RecordScene>),
     /// By a sum of histories that are not sums, each with its factor.
     Sum(Arc<[(f64, History)]>),
+    /// By a product of histories.
+    Product(Arc<ProductScene>),
 }
 
 impl History {
@@ -31,6 +33,7 @@ impl History {
             Self::Sum(terms) => {
                 Arc::new(Sum::new(terms.iter().map(|(factor, term)| (*factor, term.signal())).collect()))
             }
+            Self::Product(product) => Arc::new(product.signal.clone()),
         }
     }
 
@@ -43,6 +46,7 @@ impl History {
             Self::Table(table) => table.ends()[1].0,
             Self::Record(record) => record.table.ends()[1].0,
             Self::Sum(terms) => terms.iter().map(|(_, term)| term.settles_at()).fold(f64::NEG_INFINITY, f64::max),
+            Self::Product(product) => product.settles_at(),
         }
     }
 
@@ -62,6 +66,7 @@ impl History {
         match self {
             Self::Formula(formula) => formula.swings(),
             Self::Chirp(chirp) => Some(chirp.swings()),
+            Self::Product(product) => product.swings(),
             Self::Table(_) | Self::Record(_) | Self::Sum(_) => None,
         }
     }
@@ -70,10 +75,73 @@ impl History {
     #[must_use]
     pub fn table(&self) -> Option<&Table> {
         match self {
-            Self::Formula(_) | Self::Chirp(_) | Self::Sum(_) => None,
+            Self::Formula(_) | Self::Chirp(_) | Self::Sum(_) | Self::Product(_) => None,
             Self::Table(table) => Some(table),
             Self::Record(record) => Some(&record.table),
         }
+    }
+}
+
+/// A product of histories.
+#[derive(Debug, Clone)]
+pub struct ProductScene {
+    scale: f64,
+    factors: Vec<History>,
+    signal: Product,
+}
+
+impl ProductScene {
+    /// The product of these histories and `scale`; `until` is the end of the run, s.
+    ///
+    /// # Errors
+    /// If it has too many factors, or too many breaks or periods in the run.
+    pub fn new(scale: f64, factors: Vec<History>, until: f64) -> Result<Self, SignalError> {
+        let signal = Product::new(scale, factors.iter().map(History::signal).collect(), until)?;
+        Ok(Self { scale, factors, signal })
+    }
+
+    /// The number that multiplies its factors.
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Its factors.
+    #[must_use]
+    pub fn factors(&self) -> &[History] {
+        &self.factors
+    }
+
+    /// Once all factors have settled, or one has settled at 0.
+    fn settles_at(&self) -> f64 {
+        let settled = |history: &History| {
+            let at = history.settles_at();
+            // At any later time.
+            (at, at.is_finite() && history.signal().value(at + 1.0) == 0.0)
+        };
+        let all = self.factors.iter().map(settled);
+        let (mut last, mut first_zero) = (f64::NEG_INFINITY, f64::INFINITY);
+        for (at, at_zero) in all {
+            last = last.max(at);
+            first_zero = if at_zero { first_zero.min(at) } else { first_zero };
+        }
+        last.min(first_zero)
+    }
+
+    /// The shortest period of its oscillation, and between which times it oscillates, if two factors
+    /// do: their frequencies add. A single one is checked by itself.
+    fn swings(&self) -> Option<(f64, [f64; 2])> {
+        let swings: Vec<(f64, [f64; 2])> = self.factors.iter().filter_map(History::swings).collect();
+        let rate: f64 = swings.iter().map(|(period, _)| period.recip()).sum();
+        let from = swings.iter().map(|(_, [from, _])| *from).fold(f64::NEG_INFINITY, f64::max);
+        let to = swings.iter().map(|(_, [_, to])| *to).fold(f64::INFINITY, f64::min);
+        (swings.len() > 1 && from < to).then_some((rate.recip(), [from, to]))
+    }
+}
+
+impl PartialEq for ProductScene {
+    fn eq(&self, other: &Self) -> bool {
+        self.scale == other.scale && self.factors == other.factors
     }
 }
 
@@ -105,6 +173,13 @@ impl RecordScene {
         let times = (0..values.len()).map(|k| record.time(k)).collect();
         let table = Arc::new(Table::new(times, values)?);
         Ok(Self { path: path.to_owned(), file: file.to_owned(), record, table })
+    }
+
+    /// Its spectral acceleration at a natural period (s), for 5 % damping, m/s²; `None` if it can't be
+    /// computed.
+    #[must_use]
+    pub fn spectral_acceleration(&self, period: f64) -> Option<f64> {
+        self.record.intensity(teeter_record::IntensityMeasure::SpectralAcceleration { period }).ok()
     }
 
     /// Its accelerations over time, m/s².

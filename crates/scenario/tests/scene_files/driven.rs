@@ -429,3 +429,139 @@ fn terms_of_a_sum_are_checked_for_what_the_sum_drives() {
     assert!(fast.contains("its shortest period of 83.33 ms is 4.17 steps of 20 ms: a step takes its mean"), "{fast}");
     assert!(!warnings.iter().any(|warning| warning.contains("not used")), "{warnings:?}");
 }
+
+const BURST: &str = "
+[signal.s]
+shape = 'product'
+factors = ['envelope', 'both']
+scale = 2
+[signal.envelope]
+shape = 'half-sine'
+duration = '0.8 s'
+scale = 3
+[signal.both]
+shape = 'sum'
+terms = ['steady', 'beat']
+[signal.steady]
+shape = 'constant'
+scale = 0.5
+[signal.beat]
+shape = 'product'
+factors = ['slow', 'fast']
+scale = -1.5
+[signal.slow]
+shape = 'harmonic'
+frequency = '1 Hz'
+[signal.fast]
+shape = 'harmonic'
+frequency = '7 Hz'
+phase = '30 deg'
+";
+
+/// ∫ f by Simpson's rule.
+fn simpson(f: impl Fn(f64) -> f64, end: f64) -> f64 {
+    let (n, h) = (100_000_u32, end / 2e5);
+    let piece = |k: u32| 2.0 * h * f64::from(k);
+    (0..n).map(|k| h / 3.0 * (f(piece(k)) + 4.0 * f(piece(k) + h) + f(piece(k) + 2.0 * h))).sum()
+}
+
+#[test]
+fn a_product_leaves_its_impulse_whatever_the_step() {
+    let run = free_block("1 s", &format!("{PUSHED}{BURST}"));
+    let value = |t: f64| {
+        let beat = (TAU * t).sin() * (TAU * 7.0 * t + PI / 6.0).sin();
+        2.0 * 3.0 * (PI * t / 0.8).sin() * (0.5 - 1.5 * beat)
+    };
+    let area = simpson(value, 0.8);
+    assert!(area.abs() > 0.1 && (run.state.v[0] - 3.0 * area).abs() < 1e-12, "{} {}", run.state.v[0], 3.0 * area);
+    let resolved =
+        resolved(&format!("[time]\nend = '1 s'\nstep = '20 ms'\n{BLOCK}position = ['0 m', '0 m']\n{PUSHED}{BURST}"));
+    let warnings: Vec<String> = resolved.warnings.iter().map(ToString::to_string).collect();
+    assert!(!warnings.iter().any(|warning| warning.contains("not used")), "{warnings:?}");
+    // 7 Hz and 1 Hz make 8 Hz, 6.25 steps of 20 ms.
+    let fast = warnings.iter().find(|warning| warning.contains("signal.beat.factors")).unwrap();
+    assert!(fast.contains("the frequencies of its factors add") && fast.contains("125 ms is 6.25 steps"), "{fast}");
+    let written = resolved.document.to_toml();
+    assert_eq!(load(written.as_bytes(), "scene.toml", "scene", &[]).unwrap().scene, resolved.scene);
+}
+
+#[test]
+fn products_that_cannot_be_are_refused_with_place_and_remedy() {
+    let message = |signals: &str| {
+        let text = format!("[time]\nend = '1 s'\nstep = '1 ms'\n{BLOCK}position = ['0 m', '0 m']\n{PUSHED}{signals}");
+        load(text.as_bytes(), "scene.toml", "scene", &[]).unwrap_err().to_string()
+    };
+    let product = |name: &str, of: &str| format!("[signal.{name}]\nshape = 'product'\nfactors = {of}\n");
+    let around = message(&format!("{}[signal.a]\nshape = 'sum'\nterms = ['s']\n", product("s", "['a']")));
+    assert!(around.contains("the signals are made of each other: `s` → `a` → `s`"), "{around}");
+    assert_eq!(around.matches("error:").count(), 1, "{around}");
+    assert!(message(&product("s", "['x']")).contains("the signal `x` is not defined"));
+    assert!(message("[signal.s]\nshape = 'product'\nterms = ['a']\n").contains("has no meaning with shape = product"));
+    let deep: String = (0..40).map(|k| product(&format!("d{k}"), &format!("['d{}']", k + 1))).collect();
+    let deep = message(&[product("s", "['d0']"), deep, "[signal.d40]\nshape = 'constant'\n".to_owned()].concat());
+    assert!(deep.contains("sums and products of each other, 33 deep, but 32 is the limit"), "{deep}");
+    let fast = "[signal.f]\nshape = 'harmonic'\nfrequency = '1000 kHz'\n";
+    let many = message(&[product("s", "['f', 'f']"), fast.to_owned()].concat());
+    assert!(many.contains("signal.s.factors") && many.contains("at most 4000000 in a run"), "{many}");
+    let one = "[signal.c]\nshape = 'constant'\n";
+    let many = message(&[product("s", &format!("[{}]", vec!["'c'"; 16].join(","))), one.to_owned()].concat());
+    assert!(many.contains("the number of factors is 16, but must be at most 15"), "{many}");
+    let wrong = message(&[product("s", "['a']"), "[signal.a]\nshape = 'harmonic'\n".to_owned()].concat());
+    assert!(wrong.matches("error:").count() == 1 && wrong.contains("neither frequency nor period is given"), "{wrong}");
+    let large = "[signal.c]\nshape = 'constant'\nscale = 1e10\n".to_owned();
+    let large = message(&[product("s", "['c', 'c']"), large].concat());
+    assert!(large.contains("the scales of its factors multiply to 1e20, over 1e12"), "{large}");
+}
+
+#[test]
+fn a_table_is_read_by_its_columns_its_unit_or_its_step_alone() {
+    let pushed = |file: &'static str, keys: &str| {
+        let text = format!(
+            "[time]\nend = '1 s'\nstep = '1 ms'\n[world]\ngravity = '0 m/s^2'\n{BLOCK}position = ['0 m', '0 m']\n\
+             {PUSHED}[signal.s]\nshape = 'table'\nfile = 'push.csv'\n{keys}"
+        );
+        let read = &mut |_: &str| Ok(file.as_bytes().to_vec());
+        load_with(text.as_bytes(), "scene.toml", "scene", &[], read).map_err(|errors| errors.to_string())
+    };
+    let impulse = |file, keys: &str| {
+        let resolved = pushed(file, keys).unwrap_or_else(|errors| panic!("{errors}"));
+        assert_eq!(
+            resolved.warnings.iter().count(),
+            0,
+            "{:?}",
+            resolved.warnings.iter().next().map(ToString::to_string)
+        );
+        let mut simulation = Simulation::new(&resolved.scene).unwrap();
+        assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+        simulation.state.v[0]
+    };
+    // 1 kg, 3 N: three times the area under 0, 2, 2, 0 at 0.1 s each, 0.4 s.
+    for (file, keys) in [
+        ("t,a\n0.1,0\n0.2,2\n0.3,2\n0.4,0\n", ""),
+        ("n;b;t;a\n1;9;0,1;0\n2;9;0,2;2\n3;9;0,3;2\n4;9;0,4;0\n", "columns = ['t', 'a']"),
+        ("0 100 9\n2 200 9\n2 300 9\n0 400 9\n", "columns = ['2', '1']\ntime_unit = 'ms'"),
+        ("0\n2\n2\n0\n", "step = '0.1 s'\nstart = '0.1 s'"),
+        ("a\n0\n2\n2\n0\n", "step = '100 ms'"),
+    ] {
+        let found = impulse(file, keys);
+        assert!((found - 3.0 * 0.4).abs() < 1e-14, "{keys}: {found}");
+    }
+    // Outside its rows the first and last value, with a warning, or 0.
+    let (file, area) = ("0.1,1\n0.3,2\n", 0.3);
+    assert_eq!(pushed(file, "").unwrap().warnings.iter().count(), 2);
+    assert!((impulse(file, "outside = 'zero'") - 3.0 * area).abs() < 1e-14);
+    assert!((impulse("0.1,2\n0.3,0\n", "outside = 'zero'") - 3.0 * 0.2).abs() < 1e-14);
+    for (file, keys, says) in [
+        ("0\n1\n", "step = '1 s'\ncolumns = ['1', '2']", "with step the file has one column"),
+        ("0\n1\n", "step = '1 s'\ntime_unit = 'ms'", "with step the file has one column"),
+        ("0,1\n1,2\n", "step = '1 s'", "line 1: 2 columns, but a table has one, values, with step"),
+        ("0\n", "step = '1 s'", "it has 1 row of numbers, but a table needs two or more"),
+        ("0\nx\n", "step = '1 s'", "line 2: `x` is not a number"),
+        ("t,a,b\n0,1,2\n", "columns = ['t', 'c']", "there is no column `c`: the heading has t, a, b"),
+        ("t [ms],a\n0,1\n1,2\n", "time_unit = 'ms'", "the heading has the unit `ms`, so `ms` must be left out"),
+        ("0,1\n1,2\n", "outside = 'repeat'", "hold, zero"),
+    ] {
+        let told = pushed(file, keys).map(|_| ()).unwrap_err();
+        assert!(told.contains(says), "{keys}: {told}");
+    }
+}

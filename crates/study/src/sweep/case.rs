@@ -205,7 +205,7 @@ fn run_once(
     } else {
         serde_json::Value::Null
     };
-    let outputs = sweep.outputs().iter().map(|output| output.cell(&summary, &columns)).collect();
+    let outputs = sweep.outputs().iter().map(|output| output.cell(&summary, &columns, &resolved.scene)).collect();
     Some(CaseRow {
         number,
         status: CaseStatus::Ran(word),

@@ -75,6 +75,16 @@ const EXAMPLE: &str = "list the values, such as [\"1 mm\", \"2 mm\"], or give { 
 /// What is given if a sweep file asks for nothing.
 const DEFAULT_OUTPUTS: [&str; 4] = ["t", "impact_count", "energy.final", "energy.largest_residual"];
 
+/// What only a scene has, in a file that has nothing of a sweep (`find` and `outputs` aside).
+fn part_of_a_scene<'a, 'n, 't>(tables: &'n [(&'a str, Node<'a, 't>)]) -> Option<(&'a str, &'n Node<'a, 't>)> {
+    let has = |name: &&str| tables.iter().any(|(table, _)| table == name);
+    if ["scene", "grid", "zip", "random"].iter().any(|name| has(name)) {
+        return None;
+    }
+    let of_a_scene = |name: &str| ["time", "world", "material", "block", "beam", "ground", "contact"].contains(&name);
+    tables.iter().find(|(name, node)| of_a_scene(name) && node.table().is_some()).map(|(name, node)| (*name, node))
+}
+
 impl Sweep {
     /// Reads the text of a sweep file; `file` is its name in messages.
     ///
@@ -92,6 +102,13 @@ impl Sweep {
             outputs: Vec::new(),
         };
         let tables = entries(root.get_ref());
+        if let Some((name, node)) = part_of_a_scene(&tables) {
+            let rule = "this is a scene, not a sweep: a sweep file names a scene, and the keys that vary";
+            let remedy = "run it with `teeter run`, or name it in a sweep file: scene = \"scene.toml\", and keys with \
+                their values under [grid]";
+            reader.wrong(name, Some(node), rule, remedy);
+            return Err(reader.into_findings());
+        }
         // Files are listed as the scene names them, wherever in the file it is named.
         let scene = tables.iter().find(|(name, _)| *name == "scene").and_then(|(_, node)| node.text());
         let files = &|pattern: &str| files(scene.unwrap_or_default(), pattern);

@@ -2,6 +2,7 @@
 
 use super::spec::{Node, Reader, entries};
 use serde_json::Value;
+use teeter_scenario::scene::Scene;
 
 /// Which row of a column is wanted.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +26,9 @@ enum Origin {
     Summary(String),
     /// A column of `trajectory.csv`.
     Column { name: String, reduction: Reduction },
+    /// The spectral acceleration, for 5 % damping, of a record as used: that of a table of the scene,
+    /// such as `ground.motion.x`, or the first.
+    Spectral { period: f64, of: Option<String> },
 }
 
 /// An output of a study: its name and where it comes from.
@@ -34,7 +38,7 @@ pub struct Output {
     origin: Origin,
 }
 
-const WORDS: [&str; 6] = ["max", "min", "max_abs", "final", "at", "of"];
+const WORDS: [&str; 7] = ["max", "min", "max_abs", "final", "at", "spectral_acceleration", "of"];
 
 impl Output {
     /// Its name: the header of its column.
@@ -48,7 +52,7 @@ impl Output {
     pub fn column(&self) -> Option<&str> {
         match &self.origin {
             Origin::Column { name, .. } => Some(name),
-            Origin::Summary(_) => None,
+            Origin::Summary(_) | Origin::Spectral { .. } => None,
         }
     }
 
@@ -57,7 +61,16 @@ impl Output {
     pub fn summary_path(&self) -> Option<&str> {
         match &self.origin {
             Origin::Summary(path) => Some(path),
-            Origin::Column { .. } => None,
+            Origin::Column { .. } | Origin::Spectral { .. } => None,
+        }
+    }
+
+    /// The record whose spectral acceleration it is, if it is one; empty for the first.
+    #[must_use]
+    pub fn spectrum_of(&self) -> Option<&str> {
+        match &self.origin {
+            Origin::Spectral { of, .. } => Some(of.as_deref().unwrap_or_default()),
+            Origin::Summary(_) | Origin::Column { .. } => None,
         }
     }
 
@@ -70,7 +83,8 @@ impl Output {
     pub(crate) fn read(reader: &mut Reader<'_>, name: &str, node: &Node<'_, '_>) -> Option<Self> {
         let path = format!("outputs.{name}");
         let example = "write the path of a number in summary.json, such as \"energy.largest_residual\", or a column of \
-            trajectory.csv as { max = \"block.phi\" }, min, max_abs, final, or { at = \"0.5 s\", of = \"block.phi\" }";
+            trajectory.csv as { max = \"block.phi\" }, min, max_abs, final, or { at = \"0.5 s\", of = \"block.phi\" }, \
+            or { spectral_acceleration = \"0.5 s\" } of the record at this period";
         if let Some(place) = node.text() {
             return Some(Self { name: name.to_owned(), origin: Origin::Summary(place.to_owned()) });
         }
@@ -99,25 +113,28 @@ impl Output {
             [("max_abs", column, _)] => (*column, Reduction::MaxAbs),
             [("final", column, _)] => (*column, Reduction::Final),
             [("at", time, value), ("of", column, _)] | [("of", column, _), ("at", time, value)] => {
-                match teeter_scenario::quantity::parse(time, teeter_scenario::dimension::Dimension::TIME) {
-                    Ok(time) if time >= 0.0 => (*column, Reduction::At(time)),
-                    Ok(_) => {
-                        reader.wrong(&format!("{path}.at"), Some(value), "before the start", "give a time from 0 on");
-                        return None;
-                    }
-                    Err(error) => {
-                        reader.wrong(
-                            &format!("{path}.at"),
-                            Some(value),
-                            &error.to_string(),
-                            "give a time with its unit, such as \"0.5 s\"",
-                        );
-                        return None;
-                    }
+                (*column, Reduction::At(time_of(reader, &format!("{path}.at"), time, value)?))
+            }
+            [("spectral_acceleration", period, value), rest @ ..]
+            | [rest @ .., ("spectral_acceleration", period, value)]
+                if matches!(rest, [] | [("of", ..)]) =>
+            {
+                let key = format!("{path}.spectral_acceleration");
+                let period = time_of(reader, &key, period, value)?;
+                if period <= 0.0 {
+                    reader.wrong(&key, Some(value), "not a period", "give a period above 0, such as \"0.5 s\"");
+                    return None;
                 }
+                let of = rest.first().map(|(_, record, _)| (*record).to_owned());
+                return Some(Self { name: name.to_owned(), origin: Origin::Spectral { period, of } });
             }
             _ => {
-                reader.wrong(&path, Some(node), "one of max, min, max_abs, final is expected, or at with of", example);
+                reader.wrong(
+                    &path,
+                    Some(node),
+                    "one of max, min, max_abs, final, spectral_acceleration is expected, or at with of",
+                    example,
+                );
                 return None;
             }
         };
@@ -125,14 +142,32 @@ impl Output {
     }
 
     /// The text of its cell: empty where there is no such value.
-    pub(crate) fn cell(&self, summary: &Value, columns: &Columns) -> String {
+    pub(crate) fn cell(&self, summary: &Value, columns: &Columns, scene: &Scene) -> String {
         match &self.origin {
+            Origin::Spectral { period, of } => {
+                let mut records = scene.records();
+                let record = records.find(|record| of.as_ref().is_none_or(|path| *path == record.path));
+                let value = record.and_then(|record| record.spectral_acceleration(*period));
+                value.map(|value| format!("{value:?}")).unwrap_or_default()
+            }
             Origin::Summary(path) => at_path(summary, path).map(text_of).unwrap_or_default(),
             Origin::Column { name, reduction } => {
                 columns.reduced(name, reduction).map(|value| format!("{value:?}")).unwrap_or_default()
             }
         }
     }
+}
+
+/// A time from 0 on.
+fn time_of(reader: &mut Reader<'_>, path: &str, text: &str, value: &Node<'_, '_>) -> Option<f64> {
+    match teeter_scenario::quantity::parse(text, teeter_scenario::dimension::Dimension::TIME) {
+        Ok(time) if time >= 0.0 => return Some(time),
+        Ok(_) => reader.wrong(path, Some(value), "before the start", "give a time from 0 on"),
+        Err(error) => {
+            reader.wrong(path, Some(value), &error.to_string(), "give a time with its unit, such as \"0.5 s\"");
+        }
+    }
+    None
 }
 
 /// The value at `energy.initial`, `peaks.0.phi` or `peaks.-1.phi`, the last of an array; `peaks.len`
@@ -240,7 +275,7 @@ mod tests {
             "t": 1.0, "steps": 100, "ended": "complete", "horizon": null,
             "peaks": [{ "phi": 0.1 }, { "phi": -0.05 }], "energy": { "initial": 1e-20 },
         });
-        let cell = |path: &str| Output::summary(path).cell(&summary, &Columns::default());
+        let cell = |path: &str| at_path(&summary, path).map(text_of).unwrap_or_default();
         let cells = ["t", "steps", "ended", "horizon", "peaks.0.phi", "peaks.-1.phi", "peaks.len", "energy.initial"];
         assert_eq!(cells.map(cell), ["1.0", "100", "complete", "", "0.1", "-0.05", "2", "1e-20"]);
         assert_eq!(["peaks.2.phi", "peaks.-3.phi", "energy.none", "t.t"].map(cell), ["", "", "", ""]);

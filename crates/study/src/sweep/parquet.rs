@@ -196,6 +196,9 @@ fn unit(name: &str, sweep: &Sweep) -> Option<String> {
         _ => name,
     };
     if let Some(output) = sweep.outputs().iter().find(|output| output.name() == name) {
+        if output.spectrum_of().is_some() {
+            return Some("m/s^2".to_owned());
+        }
         return teeter_report::column_unit("trajectory.csv", output.column()?).map(str::to_owned);
     }
     match teeter_scenario::keys::find(key)? {
