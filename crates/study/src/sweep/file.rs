@@ -78,7 +78,7 @@ const DEFAULT_OUTPUTS: [&str; 4] = ["t", "impact_count", "energy.final", "energy
 /// What only a scene has, in a file that has nothing of a sweep (`find` and `outputs` aside).
 fn part_of_a_scene<'a, 'n, 't>(tables: &'n [(&'a str, Node<'a, 't>)]) -> Option<(&'a str, &'n Node<'a, 't>)> {
     let has = |name: &&str| tables.iter().any(|(table, _)| table == name);
-    if ["scene", "grid", "zip", "random"].iter().any(|name| has(name)) {
+    if ["scene", "grid", "zip", "random"].iter().any(has) {
         return None;
     }
     let of_a_scene = |name: &str| ["time", "world", "material", "block", "beam", "ground", "contact"].contains(&name);
