@@ -248,6 +248,8 @@ mod tests {
     use super::super::{Chirp, Formula, Growth, Sum, Table};
     use super::*;
 
+    type Factors = Vec<Arc<dyn Signal>>;
+
     fn signal(formula: Result<Formula, SignalError>) -> Arc<dyn Signal> {
         Arc::new(formula.unwrap())
     }
@@ -258,7 +260,7 @@ mod tests {
         let chirp = || Arc::new(Chirp::new(0.5, 1.0, [1.0, 5.0], 0.4, Growth::Logarithmic).unwrap());
         let harmonic = || signal(Formula::harmonic(0.1, 3.3, 0.4));
         let sum = Sum::new(vec![(0.3, table() as Arc<dyn Signal>), (-2.0, harmonic())]);
-        let products: [(Vec<Arc<dyn Signal>>, &[f64]); 6] = [
+        let products: [(Factors, &[f64]); 6] = [
             (vec![table(), harmonic()], &[0.1, 0.2, 0.7, 1.3]),
             (vec![signal(Formula::half_sine(-0.3, 1.5)), harmonic()], &[0.1, 1.2]),
             (vec![signal(Formula::ricker(0.9, 1.0)), signal(Formula::ramp(0.3, 0.6))], &[0.3, 0.9]),

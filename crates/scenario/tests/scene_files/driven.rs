@@ -525,12 +525,7 @@ fn a_table_is_read_by_its_columns_its_unit_or_its_step_alone() {
     };
     let impulse = |file, keys: &str| {
         let resolved = pushed(file, keys).unwrap_or_else(|errors| panic!("{errors}"));
-        assert_eq!(
-            resolved.warnings.iter().count(),
-            0,
-            "{:?}",
-            resolved.warnings.iter().next().map(ToString::to_string)
-        );
+        assert_eq!(resolved.warnings.len(), 0, "{:?}", resolved.warnings.first().map(ToString::to_string));
         let mut simulation = Simulation::new(&resolved.scene).unwrap();
         assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
         simulation.state.v[0]
@@ -548,7 +543,7 @@ fn a_table_is_read_by_its_columns_its_unit_or_its_step_alone() {
     }
     // Outside its rows the first and last value, with a warning, or 0.
     let (file, area) = ("0.1,1\n0.3,2\n", 0.3);
-    assert_eq!(pushed(file, "").unwrap().warnings.iter().count(), 2);
+    assert_eq!(pushed(file, "").unwrap().warnings.len(), 2);
     assert!((impulse(file, "outside = 'zero'") - 3.0 * area).abs() < 1e-14);
     assert!((impulse("0.1,2\n0.3,0\n", "outside = 'zero'") - 3.0 * 0.2).abs() < 1e-14);
     for (file, keys, says) in [

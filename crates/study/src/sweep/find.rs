@@ -5,8 +5,8 @@
 //! differ. So the states at both ends are part of the result, values between them can be scanned
 //! first, and the number of changes that were seen is told.
 
+use super::axes::{end, same_unit};
 use super::criterion::Criterion;
-use super::file::{end, same_unit};
 use super::number::{WrittenNumber, in_table};
 use super::spec::{Node, Reader, entries};
 use toml::de::DeTable;

@@ -7,6 +7,7 @@
 //! `results.csv`, and [`write_parquet`] repeats that as `results.parquet`. [`merge`] puts the journals of several shards together, to the same bytes as one
 //! run of all cases.
 
+mod axes;
 mod case;
 mod criterion;
 mod figures;

@@ -1,0 +1,338 @@
+//! What varies in a sweep file: axes and random samples.
+
+use super::number::WrittenNumber;
+use super::sample::{Distribution, Method, Sampler};
+use super::spec::{Node, Reader, entries};
+use toml::de::DeTable;
+
+/// Lists the files that match a pattern, as the scene of the file names them; or says why not.
+pub(super) type ListFiles<'a> = dyn Fn(&str) -> Result<Vec<String>, String> + 'a;
+
+/// Largest number of values of one axis, and of random samples, which are kept in memory.
+const MOST_VALUES: u64 = 1_000_000;
+
+const RANGE: [&str; 5] = ["from", "to", "count", "spacing", "files"];
+const DISTRIBUTIONS: [&str; 4] = ["uniform", "log_uniform", "normal", "log_normal"];
+const EXAMPLE: &str = "list the values, such as [\"1 mm\", \"2 mm\"], or give { from = \"1 mm\", to = \"9 mm\", count = 5 }, \
+    with spacing = \"log\" for a logarithmic range, or { files = \"records/*.AT2\" }";
+
+/// Keys that change together, and their values.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Axis {
+    pub(super) keys: Vec<String>,
+    /// By keys.
+    pub(super) values: Vec<Vec<String>>,
+}
+
+impl Axis {
+    pub(super) fn len(&self) -> u64 {
+        self.values.first().map_or(1, |values| values.len() as u64)
+    }
+}
+
+/// Keys with random values.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Samples {
+    pub(super) keys: Vec<RandomKey>,
+    pub(super) count: u64,
+    pub(super) sampler: Sampler,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct RandomKey {
+    pub(super) key: String,
+    pub(super) distribution: Distribution,
+    /// A number in the unit of its values.
+    pub(super) unit: WrittenNumber,
+}
+
+/// Keys with their values: `contact.feet.friction = [0.3, 0.5]`, quoted or not.
+fn leaves<'a, 't>(table: &'a DeTable<'t>, words: &[&str], above: &str) -> Vec<(String, Node<'a, 't>)> {
+    let mut all = Vec::new();
+    for (name, node) in entries(table) {
+        let key = if above.is_empty() { name.to_owned() } else { format!("{above}.{name}") };
+        match node.table() {
+            // A range has only keys of a range, whose values are no tables: other tables are part of the
+            // path.
+            Some(inner) if !is_range(inner, words) => all.extend(leaves(inner, words, &key)),
+            _ => all.push((key, node)),
+        }
+    }
+    all
+}
+
+fn is_range(table: &DeTable<'_>, words: &[&str]) -> bool {
+    table.is_empty() || entries(table).iter().any(|(name, node)| words.contains(name) && node.table().is_none())
+}
+
+pub(super) fn grid(reader: &mut Reader<'_>, table: &DeTable<'_>, name: &str, files: &ListFiles<'_>) -> Vec<Axis> {
+    let keys = leaves(table, &RANGE, "");
+    let read = |(key, node): (String, Node<'_, '_>)| {
+        let values = values(reader, &format!("{name}.{key}"), &node, files)?;
+        Some(Axis { keys: vec![key], values: vec![values] })
+    };
+    keys.into_iter().filter_map(read).collect()
+}
+
+/// Keys whose first values belong together, and so on.
+pub(super) fn together(
+    reader: &mut Reader<'_>,
+    table: &DeTable<'_>,
+    node: &Node<'_, '_>,
+    files: &ListFiles<'_>,
+) -> Option<Axis> {
+    let axes = grid(reader, table, "zip", files);
+    let lengths: Vec<u64> = axes.iter().map(Axis::len).collect();
+    if lengths.windows(2).any(|pair| pair[0] != pair[1]) {
+        let count = |axis: &Axis| format!("{} has {}", axis.keys.join(""), axis.len());
+        let rule =
+            format!("lists of one length are expected: {}", axes.iter().map(count).collect::<Vec<_>>().join(", "));
+        reader.wrong("zip", Some(node), &rule, "give each key one value a case, or move a key to [grid]");
+        return None;
+    }
+    let (keys, values) = axes.into_iter().map(|axis| (axis.keys, axis.values)).fold(
+        (Vec::new(), Vec::new()),
+        |(mut keys, mut values), (more_keys, more_values)| {
+            keys.extend(more_keys);
+            values.extend(more_values);
+            (keys, values)
+        },
+    );
+    (!keys.is_empty()).then_some(Axis { keys, values })
+}
+
+/// The values of a key: listed, a range, or files.
+fn values(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>, files: &ListFiles<'_>) -> Option<Vec<String>> {
+    if let Some(items) = node.array() {
+        if items.is_empty() {
+            reader.wrong(path, Some(node), "no values", EXAMPLE);
+            return None;
+        }
+        return Some(items.iter().map(|item| reader.setting(item)).collect());
+    }
+    let Some(table) = node.table() else {
+        reader.wrong(path, Some(node), "a list of values is expected", EXAMPLE);
+        return None;
+    };
+    let (mut ends, mut count, mut log) = ([None, None], None, false);
+    for (word, value) in entries(table) {
+        let inner = format!("{path}.{word}");
+        match word {
+            "files" => return listed_files(reader, &inner, &value, files),
+            "from" | "to" => ends[usize::from(word == "to")] = Some(end(reader, &inner, &value)?),
+            "count" => match value.whole() {
+                Some(number) if (2..=MOST_VALUES).contains(&number) => count = Some(number),
+                _ => {
+                    let rule = format!("a whole number from 2 to {MOST_VALUES} is expected");
+                    reader.wrong(&inner, Some(&value), &rule, "both ends are among the values");
+                    return None;
+                }
+            },
+            "spacing" => match value.text() {
+                Some("linear") => {}
+                Some("log") => log = true,
+                _ => {
+                    reader.wrong(
+                        &inner,
+                        Some(&value),
+                        "\"linear\" or \"log\" is expected",
+                        "leave it out for \"linear\"",
+                    );
+                    return None;
+                }
+            },
+            other => {
+                reader.unknown(&inner, &value, other, &RANGE);
+                return None;
+            }
+        }
+    }
+    let ([Some(from), Some(to)], Some(count)) = (&ends, count) else {
+        reader.wrong(path, Some(node), "from, to and count belong together", EXAMPLE);
+        return None;
+    };
+    if !same_unit(reader, path, node, from, to) {
+        return None;
+    }
+    if log && !(from.value > 0.0 && to.value > 0.0) {
+        reader.wrong(
+            path,
+            Some(node),
+            "a logarithmic range is between positive numbers",
+            "leave out spacing = \"log\"",
+        );
+        return None;
+    }
+    let value = |k: u64| {
+        let share = k as f64 / (count - 1) as f64;
+        match k {
+            0 => from.value,
+            k if k == count - 1 => to.value,
+            _ if log => from.value * (to.value / from.value).powf(share),
+            _ => from.value + (to.value - from.value) * share,
+        }
+    };
+    Some((0..count).map(|k| from.text_of(value(k))).collect())
+}
+
+pub(crate) fn end(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>) -> Option<WrittenNumber> {
+    let number = WrittenNumber::read(&reader.setting(node));
+    if number.is_none() {
+        reader.wrong(path, Some(node), "a number is expected, with the unit of its key", EXAMPLE);
+    }
+    number
+}
+
+pub(crate) fn same_unit(
+    reader: &mut Reader<'_>,
+    path: &str,
+    node: &Node<'_, '_>,
+    a: &WrittenNumber,
+    b: &WrittenNumber,
+) -> bool {
+    if a.unit == b.unit {
+        return true;
+    }
+    let or_none = |unit: &str| if unit.is_empty() { "none".to_owned() } else { format!("`{unit}`") };
+    let rule = format!("the units differ: {} and {}", or_none(&a.unit), or_none(&b.unit));
+    reader.wrong(path, Some(node), &rule, "write both numbers in one unit; the values between are in it, too");
+    false
+}
+
+fn listed_files(
+    reader: &mut Reader<'_>,
+    path: &str,
+    node: &Node<'_, '_>,
+    files: &ListFiles<'_>,
+) -> Option<Vec<String>> {
+    let patterns: Option<Vec<&str>> = match (node.text(), node.array()) {
+        (Some(text), _) => Some(vec![text]),
+        (None, Some(items)) => items.iter().map(Node::text).collect(),
+        (None, None) => None,
+    };
+    let Some(patterns) = patterns else {
+        reader.wrong(path, Some(node), "a pattern, or a list of file names, is expected", EXAMPLE);
+        return None;
+    };
+    let mut all = Vec::new();
+    for pattern in patterns {
+        match files(pattern) {
+            Ok(found) => all.extend(found),
+            Err(why) => {
+                reader.wrong(
+                    path,
+                    Some(node),
+                    &format!("`{pattern}`: {why}"),
+                    "patterns are relative to the sweep file",
+                );
+                return None;
+            }
+        }
+    }
+    Some(all)
+}
+
+/// Keys with random values: `count`, `seed`, `method`, and the keys.
+pub(super) fn samples(reader: &mut Reader<'_>, table: &DeTable<'_>, node: &Node<'_, '_>) -> Option<Samples> {
+    let (mut count, mut seed, mut method, mut keys) = (None, 0, Method::Independent, Vec::new());
+    for (name, value) in entries(table) {
+        let path = format!("random.{name}");
+        match name {
+            "count" => match value.whole() {
+                Some(number) if (1..=MOST_VALUES).contains(&number) => count = Some(number),
+                _ => {
+                    let rule = format!("a whole number from 1 to {MOST_VALUES} is expected");
+                    reader.wrong(&path, Some(&value), &rule, "it is the number of samples");
+                }
+            },
+            "seed" => match value.whole() {
+                Some(number) => seed = number,
+                None => reader.wrong(
+                    &path,
+                    Some(&value),
+                    "a whole number from 0 on is expected",
+                    "the same seed gives the same samples",
+                ),
+            },
+            "method" => match value.text() {
+                Some("independent") => method = Method::Independent,
+                Some("latin-hypercube") => method = Method::LatinHypercube,
+                _ => {
+                    let rule = "\"independent\" or \"latin-hypercube\" is expected";
+                    reader.wrong(&path, Some(&value), rule, "leave it out for \"independent\"");
+                }
+            },
+            _ => match value.table() {
+                Some(inner) if !is_range(inner, &DISTRIBUTIONS) => {
+                    for (key, leaf) in leaves(inner, &DISTRIBUTIONS, name) {
+                        keys.extend(random_key(reader, key, &leaf));
+                    }
+                }
+                _ => keys.extend(random_key(reader, name.to_owned(), &value)),
+            },
+        }
+    }
+    let Some(count) = count else {
+        reader.wrong("random.count", Some(node), "missing: how many samples?", "such as count = 100");
+        return None;
+    };
+    if keys.is_empty() {
+        let remedy = "give a key its distribution, such as contact.feet.friction = { uniform = [0.2, 0.6] }";
+        reader.wrong("random", Some(node), "nothing is random", remedy);
+        return None;
+    }
+    let sampler = Sampler::new(seed, method, keys.len(), u32::try_from(count).unwrap_or(u32::MAX));
+    Some(Samples { keys, count, sampler })
+}
+
+fn random_key(reader: &mut Reader<'_>, key: String, node: &Node<'_, '_>) -> Option<RandomKey> {
+    let path = format!("random.{key}");
+    let example = "give one of { uniform = [low, high] }, { log_uniform = [low, high] }, { normal = [mean, standard \
+        deviation] } or { log_normal = [median, standard deviation of the logarithm] }";
+    let words = node.table().map(entries).unwrap_or_default();
+    let [(word, value)] = words.as_slice() else {
+        reader.wrong(&path, Some(node), "a distribution is expected", example);
+        return None;
+    };
+    if !DISTRIBUTIONS.contains(word) {
+        reader.unknown(&format!("{path}.{word}"), value, word, &DISTRIBUTIONS);
+        return None;
+    }
+    let numbers = value.array().unwrap_or_default();
+    let [a, b] = numbers.as_slice() else {
+        reader.wrong(&format!("{path}.{word}"), Some(value), "two numbers are expected", example);
+        return None;
+    };
+    let (first, second) = (end(reader, &path, a)?, end(reader, &path, b)?);
+    // The standard deviation of a logarithm has no unit.
+    if *word != "log_normal" && !same_unit(reader, &path, value, &first, &second) {
+        return None;
+    }
+    let (x, y) = (first.value, second.value);
+    let (distribution, rule) = match *word {
+        "uniform" => {
+            (Distribution::Uniform { low: x, high: y }, (x < y).then_some(()).ok_or("the lower end comes first"))
+        }
+        "log_uniform" => {
+            let fine = 0.0 < x && x < y;
+            (
+                Distribution::LogUniform { low: x, high: y },
+                fine.then_some(()).ok_or("two positive numbers, the smaller one first"),
+            )
+        }
+        "normal" => (
+            Distribution::Normal { mean: x, deviation: y },
+            (y > 0.0).then_some(()).ok_or("a standard deviation is positive"),
+        ),
+        _ => {
+            let fine = x > 0.0 && y > 0.0 && second.unit.is_empty();
+            let rule = "a positive median and the standard deviation of the logarithm, which has no unit";
+            (Distribution::LogNormal { median: x, deviation: y }, fine.then_some(()).ok_or(rule))
+        }
+    };
+    if let Err(rule) = rule {
+        reader.wrong(&format!("{path}.{word}"), Some(value), rule, example);
+        return None;
+    }
+    Some(RandomKey { key, distribution, unit: first })
+}
