@@ -134,10 +134,10 @@ impl Bodies<2> for Ground {
     }
 
     fn fastest(&self, v: &[f64]) -> f64 {
-        match v {
+        match *v {
             // It goes on without end: where it turns, some point of it is faster.
-            &[_, _, omega] if omega != 0.0 => f64::INFINITY,
-            &[x, y, _] => x.hypot(y),
+            [_, _, omega] if omega != 0.0 => f64::INFINITY,
+            [x, y, _] => x.hypot(y),
             _ => 0.0,
         }
     }
