@@ -47,7 +47,8 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     /// not, those act that pass it in the second half.
     goes_past_ends: bool,
     ahead: Candidates<D>,
-    start: Candidates<D>,
+    /// What is near at the start; memory.
+    pub(crate) start: Candidates<D>,
     pub(crate) stage: ContactStage<D>,
     /// Rows of one contact elsewhere than the step's.
     row: ContactRows<D>,

@@ -11,7 +11,7 @@ mod turning;
 
 use crate::moreau_jean_located::{MoreauJeanLocated, MoreauJeanLocatedSettings};
 use crate::{
-    Keep, Model, PhaseEnd, PhaseKind, Scheme, SettingError, State, StepEnergy, StepError, StepReport, StepSpan,
+    Keep, Model, PhaseEnd, PhaseKind, Scheme, SettingError, State, StepEnergy, StepError, StepReport, StepSpan, Vector,
     Workspace,
 };
 use events::Open;
@@ -108,6 +108,12 @@ pub struct EventDriven {
     /// The last contacts, where an event changes them.
     touching: Candidates<2>,
     found: Candidates<2>,
+    /// Of those that touch: what their normal velocity changes by in half the lowest bounce, m/s.
+    in_lowest_bounce: Vec<(ContactId, f64)>,
+    /// Accelerations with the contacts that pressed up to an event; empty where there were none.
+    a_pressed: Vec<f64>,
+    /// J̇v of those that don't part.
+    biases: Vec<Vector<2>>,
     ids: Vec<ContactId>,
     numbers: Vec<f64>,
     /// The step that the method would take next, s.
@@ -175,6 +181,9 @@ impl EventDriven {
             watched: Vec::new(),
             touching: Vec::new(),
             found: Vec::new(),
+            in_lowest_bounce: Vec::new(),
+            a_pressed: Vec::new(),
+            biases: Vec::new(),
             ids: Vec::new(),
             numbers: Vec::new(),
             h: 0.0,
@@ -225,6 +234,9 @@ impl Scheme<2> for EventDriven {
         self.ids.reserve(contacts);
         self.touching.reserve(2 * contacts);
         self.found.reserve(contacts);
+        self.in_lowest_bounce.reserve(contacts);
+        self.biases.reserve(contacts);
+        self.a_pressed.reserve(size.v);
         self.numbers.reserve(numbers);
         self.mean.resize(size.q, 0.0);
         self.v_before.resize(size.v, 0.0);

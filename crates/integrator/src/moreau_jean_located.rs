@@ -82,8 +82,7 @@ pub struct MoreauJeanLocated<const D: usize> {
     slides: Vec<Slide<D>>,
     ids: Vec<ContactId>,
     near: Candidates<D>,
-    /// What is near at the start of an attempt, and what is inside at a time within it.
-    at_start: Candidates<D>,
+    /// What is inside at a time within an attempt.
     on_the_way: Candidates<D>,
     /// Of these how far it is to the end of their surface, m.
     rooms: Vec<f64>,
@@ -95,6 +94,9 @@ pub struct MoreauJeanLocated<const D: usize> {
     one: ContactStage<D>,
     /// What forces do to the velocities in a whole step.
     by_forces: Vec<f64>,
+    /// Of contacts, in order of identity, how much their normal velocity may change without an impact, m/s, where that is
+    /// known better.
+    in_lowest_bounce: Vec<(ContactId, f64)>,
     /// v⁺.
     v: Vec<f64>,
     /// Which contacts of the last phase are closed after it.
@@ -136,13 +138,13 @@ impl<const D: usize> MoreauJeanLocated<D> {
             slides: Vec::new(),
             ids: Vec::new(),
             near: Vec::new(),
-            at_start: Vec::new(),
             on_the_way: Vec::new(),
             rooms: Vec::new(),
             leaving: Vec::new(),
             place: Vec::new(),
             one: ContactStage::new(),
             by_forces: Vec::new(),
+            in_lowest_bounce: Vec::new(),
             v: Vec::new(),
             stays: Vec::new(),
             lately: Vec::new(),
@@ -184,7 +186,6 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.slides.reserve(contacts);
         self.ids.reserve(contacts);
         self.near.reserve(contacts);
-        self.at_start.reserve(contacts);
         // Few of many contacts are inside on the way.
         self.on_the_way.reserve(contacts.min(crate::stage::RESERVED_CONTACTS));
         self.rooms.reserve(contacts);
@@ -192,6 +193,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.stays.reserve(contacts);
         self.lately.reserve(3 * contacts);
         self.by_forces.resize(model.size().v, 0.0);
+        self.in_lowest_bounce.reserve(contacts.min(crate::stage::RESERVED_CONTACTS));
         self.v.resize(model.size().v, 0.0);
         self.place.resize(model.size().q, 0.0);
         state.memory.reserve_numbers(3 * contacts);
@@ -252,21 +254,27 @@ impl<const D: usize> MoreauJeanLocated<D> {
     }
 
     /// Lets the contacts that touch at `from` strike; `closed`, which rise, were closed up to here. An approach
-    /// that `by_forces` make is no impact.
+    /// that `by_forces` make is no impact, nor one by the change of normal velocity (m/s) with which `in_lowest_bounce`
+    /// lists a contact; that rises, too.
     pub(crate) fn strike_by(
         &mut self,
         model: &Model<D>,
         from: &mut State,
         closed: &[ContactId],
         by_forces: impl Iterator<Item = f64>,
+        in_lowest_bounce: &[(ContactId, f64)],
         work: &mut Workspace<D>,
     ) -> Result<bool, StepError> {
         self.step.closed.clear();
         self.step.closed.extend_from_slice(closed);
         self.by_forces.clear();
         self.by_forces.extend(by_forces);
+        self.in_lowest_bounce.clear();
+        self.in_lowest_bounce.extend_from_slice(in_lowest_bounce);
         let end = from.t;
-        self.strike(model, from, end, work)
+        let struck = self.strike(model, from, end, work);
+        self.in_lowest_bounce.clear();
+        struck
     }
 
     /// Takes the rest of a step that another scheme began.

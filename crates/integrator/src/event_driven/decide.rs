@@ -3,7 +3,9 @@
 use super::instant::Kind;
 use super::modes::{Mode, Pressing};
 use super::{EventDriven, LOWEST_BOUNCE, after, smooth::MASSES, still};
-use crate::{Memory, Model, Over, Responses, Rule, State, StepError, Vector, WarmStart, Workspace};
+use crate::{
+    ContactStage, Memory, Mismatch, Model, Over, Responses, Rule, State, StepError, Vector, WarmStart, Workspace,
+};
 use teeter_detect::Candidate;
 
 /// What [`EventDriven::touching_gap`] is in tolerances of a gap.
@@ -84,8 +86,13 @@ impl EventDriven {
         if self.touching.len() > EventDriven::MOST_CONTACTS {
             return Ok(false);
         }
+        self.a_pressed.clear();
+        if !self.smooth.contacts.is_empty() {
+            self.smooth.accelerate(model, t, &from.q, &from.v, work)?;
+            self.a_pressed.extend_from_slice(&self.smooth.a);
+        }
         self.smooth.accelerate_freely(model, t, &from.q, &from.v, work)?;
-        if let Some(fastest) = self.approach(model, from)? {
+        if let Some(fastest) = self.approach(model, from, work)? {
             self.ids.clear();
             self.ids.extend(self.smooth.contacts.iter().map(|contact| contact.id));
             from.memory.forget_contacts();
@@ -93,7 +100,8 @@ impl EventDriven {
             // U²/2a is the height of a bounce.
             let height = LOWEST_BOUNCE * self.located.tolerance(&from.q);
             let time = (2.0 * height / fastest).sqrt();
-            self.located.strike_by(model, from, &self.ids, self.smooth.a.iter().map(|a| time * a), work)?;
+            let by_forces = self.smooth.a.iter().map(|a| time * a);
+            self.located.strike_by(model, from, &self.ids, by_forces, &self.in_lowest_bounce, work)?;
             self.smooth.accelerate_freely(model, t, &from.q, &from.v, work)?;
         }
         self.find_who_presses(model, from, work)
@@ -114,20 +122,25 @@ impl EventDriven {
 
     /// Where a contact that was open approaches: the largest normal acceleration of those that touch,
     /// m/s².
-    fn approach(&mut self, model: &Model<2>, from: &State) -> Result<Option<f64>, StepError> {
+    fn approach(&mut self, model: &Model<2>, from: &State, work: &mut Workspace<2>) -> Result<Option<f64>, StepError> {
         let (mut approaches, mut fastest) = (false, f64::MIN_POSITIVE);
         let instant = self.instant(from);
-        let stage = &mut self.smooth.stage;
+        let height = LOWEST_BOUNCE * self.located.tolerance(&from.q);
+        self.in_lowest_bounce.clear();
+        let smooth = &mut self.smooth;
         for candidate in &self.touching {
-            stage.clear();
-            if !stage.add(model, &from.q, candidate, &WarmStart::default(), &Memory::default())? {
+            smooth.stage.clear();
+            if !smooth.stage.add(model, &from.q, candidate, &WarmStart::default(), &Memory::default())? {
                 continue;
             }
-            // Bodies that fall beside each other have none, to rounding.
-            let rounding = ROUNDING * stage.speed(0, &self.smooth.a);
-            fastest = stage.velocity(0, &self.smooth.a)?[0].abs().max(rounding).max(fastest);
-            let slow = still(stage.speed(0, &from.v), stage.speed(0, &self.smooth.a), instant);
-            approaches |= stage.velocity(0, &from.v)?[0] < -slow;
+            // Bodies that fall beside each other have none, to rounding, but where they turn.
+            let rounding = ROUNDING * smooth.stage.speed(0, &smooth.a);
+            let turning = smooth.turning(model, &from.q, work, 0, candidate)?;
+            let a = towards(&smooth.stage, 0, [&smooth.a, &self.a_pressed])? + turning[0];
+            fastest = a.abs().max(rounding).max(fastest);
+            self.in_lowest_bounce.push((candidate.id, -velocity_after(height, -a)));
+            let slow = still(smooth.stage.speed(0, &from.v), smooth.stage.speed(0, &smooth.a), instant);
+            approaches |= smooth.stage.velocity(0, &from.v)?[0] < -slow;
         }
         Ok(approaches.then_some(fastest))
     }
@@ -145,6 +158,7 @@ impl EventDriven {
         let smooth = &mut self.smooth;
         smooth.stage.clear();
         self.found.clear();
+        self.biases.clear();
         for candidate in &self.touching {
             let row = smooth.stage.len();
             if !smooth.stage.add(model, &from.q, candidate, &WarmStart::default(), &Memory::default())? {
@@ -152,14 +166,16 @@ impl EventDriven {
             }
             let u = smooth.stage.velocity(row, &from.v)?;
             let speed = smooth.stage.speed(row, &from.v).max(smooth.stage.speed(row, &self.v_before));
-            let free = smooth.stage.velocity(row, &smooth.a)?[0];
             let slow = still(speed, smooth.stage.speed(row, &smooth.a), instant);
+            let bias = smooth.turning(model, &from.q, work, row, candidate)?;
+            let free = towards(&smooth.stage, row, [&smooth.a, &self.a_pressed])? + bias[0];
             // What would come back from less than the lowest bounce stays.
-            if u[0] > slow.max((2.0 * height * (-free).max(0.0)).sqrt()) {
+            if u[0] > slow.max(velocity_after(height, -free)) {
                 smooth.stage.drop_last();
                 continue;
             }
             self.found.push(*candidate);
+            self.biases.push(bias);
         }
         smooth.contacts.clear();
         from.memory.forget_contacts();
@@ -167,13 +183,12 @@ impl EventDriven {
             return Ok(true);
         }
         smooth.posed.clear();
-        for (row, candidate) in self.found.iter().enumerate() {
+        for (row, &bias) in self.biases.iter().enumerate() {
             let stage = &smooth.stage;
             let u = stage.velocity(row, &from.v)?;
             let speed = stage.speed(row, &from.v).max(stage.speed(row, &self.v_before));
             let slow = still(speed, stage.speed(row, &smooth.a), instant);
             let slides = (u[1].abs() > slow).then(|| u[1].signum());
-            let bias = smooth.turning(model, &from.q, work, row, candidate)?;
             let free = smooth.stage.velocity(row, &smooth.a)? + bias;
             let rule = slides.map_or(Rule::Shifted, |sign| Rule::SlidesAlong(Vector::<2>::new(0.0, sign)));
             smooth.stage.set(row, u, free, Vector::zeros(), rule)?;
@@ -216,4 +231,17 @@ impl EventDriven {
         }
         Ok(true)
     }
+}
+
+/// The velocity after a fall from a height (m) with this acceleration (m/s²), m/s; 0 where it doesn't fall.
+fn velocity_after(height: f64, acceleration: f64) -> f64 {
+    (2.0 * height * acceleration.max(0.0)).sqrt()
+}
+
+/// The normal acceleration of a contact by forces, without those of contacts or with those of the ones that pressed so far, if any are
+/// known: the one that closes it more, m/s².
+fn towards(stage: &ContactStage<2>, row: usize, [free, pressed]: [&[f64]; 2]) -> Result<f64, Mismatch> {
+    let free = stage.velocity(row, free)?[0];
+    // Without a solution they aren't numbers.
+    Ok(if pressed.is_empty() { free } else { free.min(stage.velocity(row, pressed)?[0]) })
 }

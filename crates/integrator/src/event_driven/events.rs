@@ -97,7 +97,7 @@ impl EventDriven {
             contact.u_before = contact.u;
         }
         self.watch_start();
-        if self.smooth.contacts.iter().any(|contact| !(contact.presses() > -WRONG && contact.holds() > -WRONG)) {
+        if self.smooth.contacts.iter().any(|contact| !(contact.presses() > -WRONG && contact.held > -WRONG)) {
             return Ok(Stop::Stuck);
         }
         let (mut t, mut duration) = (from.t, 0.0);
@@ -246,7 +246,7 @@ impl EventDriven {
         smooth.pulled = None;
         rk.step(h, y, |s, y, slope| {
             smooth.slope(model, t + s * h, y, work, slope)?;
-            let fails = |contact: &Pressing| contact.presses().min(contact.holds()) < -PULLED;
+            let fails = |contact: &Pressing| contact.presses().min(contact.held) < -PULLED;
             if smooth.pulled.is_none() && s < 1.0 && smooth.contacts.iter().any(fails) {
                 smooth.pulled = Some(s);
             }

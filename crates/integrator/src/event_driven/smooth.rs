@@ -19,6 +19,10 @@ pub(super) const MASSES: Weights = Weights { mass: 1.0, damping: 0.0, stiffness:
 const WORKS: usize = 2;
 const OF_CONTACT: usize = 4;
 
+/// Where nothing accelerates a contact, its scale is this part of what turning at its velocities would do: what is left is
+/// rounding.
+const LEAST_SCALE: f64 = 1e-3;
+
 /// Contacts that share friction are at its limit together, up to this part of their scale.
 const SHARED: f64 = 1e-6;
 
@@ -299,6 +303,7 @@ impl Smooth {
     /// Finds the forces that keep every contact in its mode.
     fn find_forces(&mut self, model: &Model<2>, q: &[f64], work: &mut Workspace<2>) -> Result<(), StepError> {
         let mut found = 0;
+        let fastest = self.v.iter().fold(0.0_f64, |fastest, v| fastest.max(v.abs()));
         for i in 0..self.contacts.len() {
             let Pressing { id, row, .. } = self.contacts[i];
             let Some(row) = row else { continue };
@@ -310,7 +315,7 @@ impl Smooth {
             let (own, scale) = (self.stage.block(row, row), self.stage.speed(row, &self.a));
             let contact = &mut self.contacts[i];
             contact.own = [own[(0, 0)], own[(1, 1)]];
-            contact.scale = scale + bias.norm() + f64::MIN_POSITIVE;
+            contact.scale = (scale + bias.norm()).max(LEAST_SCALE * contact.speed * fastest) + f64::MIN_POSITIVE;
             contact.free = self.stage.velocity(row, &self.a)? + bias;
         }
         self.solve_forces(|_| 1.0);

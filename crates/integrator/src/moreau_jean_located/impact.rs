@@ -86,7 +86,10 @@ impl<const D: usize> MoreauJeanLocated<D> {
             let contact = self.impact.contacts()[i];
             let law = model.law(contact.law)?;
             let u = self.impact.velocity(i, &from.v)?;
-            let u_free = u + self.impact.velocity(i, &self.by_forces)?;
+            let mut u_free = u + self.impact.velocity(i, &self.by_forces)?;
+            if let Ok(at) = self.in_lowest_bounce.binary_search_by_key(&contact.id, |(id, _)| *id) {
+                u_free[0] = u[0] + self.in_lowest_bounce[at].1;
+            }
             let mut shift = Vector::zeros();
             let rule = restitute(contact.persisting, &law, &u, &u_free, &mut shift);
             strikes |= !contact.persisting && is_impact(1.0, &u, &u_free);

@@ -69,13 +69,13 @@ impl<const D: usize> MoreauJeanLocated<D> {
         let tolerance = self.tolerance(&from.q);
         // Two bodies may approach each other.
         let margin = 2.0 * h * fastest;
-        std::mem::swap(&mut work.candidates, &mut self.at_start);
+        std::mem::swap(&mut work.candidates, &mut self.step.start);
         let detected = work.detect(model, &from.q, margin);
-        std::mem::swap(&mut work.candidates, &mut self.at_start);
+        std::mem::swap(&mut work.candidates, &mut self.step.start);
         detected?;
         self.ids.clear();
-        for k in 0..self.at_start.len() {
-            let candidate = self.at_start[k];
+        for k in 0..self.step.start.len() {
+            let candidate = self.step.start[k];
             let is_open = candidate.gap >= -tolerance && self.step.closed.binary_search(&candidate.id).is_err();
             if is_open && !self.is_with_elastic(model, &candidate.sides.map(|side| side.body)) {
                 self.ids.push(candidate.id);
@@ -88,7 +88,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         let mut first = None::<f64>;
         for k in 0..self.near.len() {
             let end = self.near[k];
-            let Some(&start) = find(&self.at_start, end.id) else { continue };
+            let Some(&start) = find(&self.step.start, end.id) else { continue };
             let known_inside = |candidate: &Candidate<D>| candidate.gap < -tolerance;
             if find(&work.candidates, end.id).is_some_and(known_inside) {
                 continue;

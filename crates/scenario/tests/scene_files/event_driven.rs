@@ -241,3 +241,92 @@ fn a_corner_that_strikes_just_before_the_edge_of_a_table_is_not_missed() {
         }
     }
 }
+
+/// Its bounces end: no bounce is lower than gaps are located to, by whatever a contact is closed again.
+fn bounces_end(scene: &str) {
+    let short = run(scene, "100 us").state;
+    for step in ["1 ms", "20 ms"] {
+        let state = run(scene, step).state;
+        for (q, other) in state.q.iter().zip(&short.q) {
+            assert!((q - other).abs() < 1e-9, "{step}: {:?} and {:?}", state.q, short.q);
+        }
+    }
+}
+
+/// Without weight: what closes their contact again is that they turn.
+#[test]
+fn bounces_of_a_disc_off_a_block_that_turns_into_it_end() {
+    bounces_end(
+        "[world]\ngravity = '0 m/s^2'\n\
+         [time]\nend = '60 ms'\nstep = '1 ms'\n\
+         [contact.c]\nbetween = ['*', '*']\nfriction = 0.3\nrestitution = 0.091\n\
+         [block.b2]\ndensity = '2368.2 kg/m^3'\ndepth = '0.1 m'\nradius = '0.04821 m'\n\
+         position = ['-0.14159 m', '0.14098 m']\nangle = '-37.220 deg'\n\
+         velocity = ['2.09136 m/s', '-0.60964 m/s']\nspin = '2.2516 rad/s'\n\
+         [block.b3]\ndensity = '2223.7 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.10819 m'\n\
+         height = '0.04859 m'\nposition = ['0.05476 m', '0.17155 m']\nangle = '43.142 deg'\n\
+         velocity = ['-0.23703 m/s', '-0.73548 m/s']\nspin = '9.6788 rad/s'\n",
+    );
+}
+
+/// Both fall alike; what closes their contact again is the ground's push on one of them.
+#[test]
+fn bounces_of_a_block_off_one_that_the_ground_pushes_end() {
+    bounces_end(
+        "[time]\nend = '0.3 s'\nstep = '1 ms'\n\
+         [contact.c]\nbetween = ['*', '*']\nfriction = 0.0\nrestitution = 0.123\n\
+         [ground]\n\
+         [block.b1]\ndensity = '2321.6 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.08663 m'\n\
+         height = '0.06002 m'\nposition = ['0.12262 m', '0.31442 m']\nangle = '-71.794 deg'\n\
+         velocity = ['-0.13323 m/s', '-2.30266 m/s']\nspin = '-6.1375 rad/s'\n\
+         [block.b2]\ndensity = '2914.2 kg/m^3'\ndepth = '0.1 m'\n\
+         shape = { kind = 'regular', sides = 5, radius = '0.03529 m' }\nrounding = '3.67 mm'\n\
+         position = ['-0.12267 m', '0.13306 m']\nangle = '-87.657 deg'\n\
+         velocity = ['0.90997 m/s', '-1.23922 m/s']\nspin = '11.3063 rad/s'\n",
+    );
+}
+
+/// Without weight nothing presses a disc to the ground on which it slides: its force and what that is measured by are
+/// rounding.
+#[test]
+fn a_disc_slides_without_weight() {
+    bounces_end(
+        "[world]\ngravity = '0 m/s^2'\n\
+         [time]\nend = '0.2 s'\nstep = '1 ms'\n\
+         [contact.c]\nbetween = ['*', '*']\nfriction = 0.0\nrestitution = 0.015\n\
+         [ground]\n\
+         [block.b1]\ndensity = '764.7 kg/m^3'\ndepth = '0.1 m'\nradius = '0.04534 m'\n\
+         position = ['-0.11158 m', '0.28201 m']\nangle = '22.980 deg'\n\
+         velocity = ['0.77106 m/s', '-1.76776 m/s']\nspin = '0.0000 rad/s'\n\
+         [block.b2]\ndensity = '1040.1 kg/m^3'\ndepth = '0.1 m'\n\
+         shape = { kind = 'regular', sides = 5, radius = '0.07699 m' }\n\
+         position = ['0.03565 m', '0.36317 m']\nangle = '85.433 deg'\n\
+         velocity = ['0.12420 m/s', '-1.77305 m/s']\nspin = '0.0000 rad/s'\n",
+    );
+}
+
+/// Four blocks come to rest on each other, with more friction than is needed: what one contact alone can't hold the others do.
+#[test]
+fn a_pile_at_rest_shares_its_friction() {
+    let scene = "[time]\nend = '0.54 s'\nstep = '1 ms'\n\
+         [contact.c]\nbetween = ['*', '*']\nfriction = 0.782\nrestitution = 0.0\n\
+         [block.table]\nfixed = true\ndensity = '1000 kg/m^3'\ndepth = '10 cm'\n\
+         width = '0.4961 m'\nheight = '0.1 m'\nposition = ['0 m', '-0.05 m']\n\
+         [block.b1]\ndensity = '2771.3 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.08014 m'\n\
+         height = '0.16018 m'\nposition = ['-0.10293 m', '0.12906 m']\nangle = '68.773 deg'\n\
+         velocity = ['0.81946 m/s', '-0.81177 m/s']\nspin = '10.9745 rad/s'\n\
+         [block.b2]\ndensity = '1196.1 kg/m^3'\ndepth = '0.1 m'\n\
+         points = [['0.06264 m', '0.00899 m'], ['-0.05547 m', '0.03046 m'], ['-0.05289 m', '-0.03476 m']]\n\
+         rounding = '2.25 mm'\nposition = ['0.10520 m', '0.32626 m']\nangle = '-16.249 deg'\n\
+         velocity = ['-0.44381 m/s', '0.17510 m/s']\nspin = '-21.1554 rad/s'\n\
+         [block.b3]\ndensity = '1685.6 kg/m^3'\ndepth = '0.1 m'\nradius = '0.04021 m'\n\
+         position = ['-0.19191 m', '0.36243 m']\nangle = '-43.992 deg'\n\
+         velocity = ['0.78727 m/s', '-0.95350 m/s']\nspin = '-35.2835 rad/s'\n\
+         [block.b4]\ndensity = '856.9 kg/m^3'\ndepth = '0.1 m'\nradius = '0.02525 m'\n\
+         position = ['-0.03699 m', '0.49013 m']\nangle = '46.593 deg'\n\
+         velocity = ['0.45709 m/s', '-0.91434 m/s']\nspin = '-42.7273 rad/s'\n";
+    let [short, long] = ["1 ms", "20 ms"].map(|step| run(scene, step).state);
+    for (q, other) in long.q.iter().zip(&short.q) {
+        assert!((q - other).abs() < 1e-9, "{:?} and {:?}", long.q, short.q);
+    }
+}
