@@ -51,7 +51,10 @@ export function wrongVerdicts(summary, trajectory, { scenery, frames }) {
     // What begins in free fall has a stance only from when it has settled, by which the rows before aren't measured.
     const [start, next] = trajectory;
     const falls = next !== undefined && at(next, "vy") - at(start, "vy") < -0.9 * gravity * (next.t - start.t);
-    const level = block.upright && stands && !falls && scenery.incline === 0 && !turns;
+    // What can touch nothing has no stance.
+    const touches = summary.model.contacts.length > 0;
+    if (!touches && verdict.max_phi_over_alpha !== null) say("it touches nothing, but has a largest φ/α");
+    const level = touches && block.upright && stands && !falls && scenery.incline === 0 && !turns;
     const beyond = (row) => Math.abs(at(row, "phi")) > block.alpha;
     if (level) {
       const share = largest(trajectory, (row) => at(row, "phi")) / block.alpha;

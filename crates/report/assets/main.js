@@ -8,8 +8,11 @@
   /** The plots over time that the page has in common with the figures: units, scales and what is left out are decided there. */
   function addPanels(late) {
     for (const panel of data.panels.filter((one) => one.late === late)) {
-      const series = panel.series.map(({ label, index, y, at_borders: atBorders }) =>
-        ({ label, index, y, t: atBorders ? forces.borders : curves.t }));
+      const series = panel.series.map(({ label, index, y, at_borders: atBorders, other_at: otherAt = [], others = [] }) => {
+        let picture = 0;
+        const known = new Map(otherAt.map((after, k) => [picture += after, others[k]]));
+        return { label, index, y, t: atBorders ? forces.borders : curves.t, known };
+      });
       plots.add({
         id: panel.id, contact: panel.contact, title: panel.title, unit: panel.unit, series, guides: panel.guides, least: panel.least,
         cut: panel.cut ? cutOf(series, panel.least) : undefined, height: late ? 160 : 170,

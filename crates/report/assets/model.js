@@ -42,6 +42,17 @@ if (frames.packed) {
   });
 }
 
+for (const [k, beam] of frames.beams.entries()) {
+  const { points } = scenery.beams[k];
+  const numbers = unpacked(beam.w);
+  beam.w = new Float64Array(points * times.length);
+  for (let i = 0, before = 0, now = 0; i < beam.w.length; i++) {
+    if (i % points === 0) [before, now] = [0, 0];
+    [before, now] = [now, numbers.signed() + 2 * now - before];
+    beam.w[i] = now;
+  }
+}
+
 /** The links of the network in a picture: number of the pair, force, and place in the first body's coordinates. */
 function linksOf(picture) {
   const numbers = unpacked(network.links[picture]);

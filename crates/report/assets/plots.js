@@ -290,17 +290,24 @@ const plots = (() => {
     panel.cursor.setAttribute("d", inView ? `M${at} ${margin.top}V${panel.height - margin.bottom}` : "M0 0");
   }
 
+  /** The value of a series at a time. Where a curve shows the extremes of many steps, `t` is that of a picture, whose value is known. */
+  function read(series, t) {
+    const picture = curves.thinned ? frameAt(t) : -1;
+    return series.known?.has(picture) ? series.known.get(picture) : valueAt(series, t);
+  }
+
   function readOut(t) {
     for (const panel of panels.filter((one) => !one.portrait)) {
       for (const series of panel.series.filter(({ raw }) => !raw)) {
-        const shown = (value) => number(Math.abs(value) < 1e-2 * panel.least ? 0 : value, series.upper ? 3 : 4);
-        const value = shown(valueAt(series, t));
+        const shown = (value) => number(value !== null && Math.abs(value) < 1e-2 * panel.least ? 0 : value, series.upper ? 3 : 4);
+        const value = shown(read(series, t));
         series.readout.textContent = series.upper ? `${value} … ${shown(valueAt({ t: series.t, y: series.upper }, t))}` : value;
       }
     }
   }
 
-  function hoverAt(t) {
+  function hoverAt(pointed) {
+    const t = pointed !== null && curves.thinned ? times[frameAt(pointed)] : pointed;
     for (const panel of panels.filter((one) => !one.portrait)) {
       const d = t === null ? "M0 0" : `M${px(t).toFixed(1)} ${margin.top}V${panel.height - margin.bottom}`;
       panel.hover.setAttribute("d", d);

@@ -284,6 +284,11 @@ impl<'a> Recorder<'a> {
         &self.kept.section_values
     }
 
+    /// Between which angles each block stood, rad.
+    pub(crate) fn points_of_no_return(&self) -> Vec<Option<[f64; 2]>> {
+        self.kept.record.fates.points_of_no_return(&self.fate_watch)
+    }
+
     /// What was seen.
     #[must_use]
     pub fn into_record(self) -> Record {

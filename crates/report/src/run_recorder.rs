@@ -144,7 +144,9 @@ impl<'a> RunRecorder<'a> {
     /// What was seen, for summary and page.
     #[must_use]
     pub fn into_parts(self) -> (Record, PageRecorder, Option<Exporter>) {
-        let (record, mut page) = (self.recorder.into_record(), self.page);
+        let mut page = self.page;
+        page.points_of_no_return = self.recorder.points_of_no_return();
+        let record = self.recorder.into_record();
         page.beams.clone_from(&record.beams);
         (record, page, self.exporter)
     }

@@ -97,6 +97,12 @@ pub struct BodyVerdict {
     /// The last peak of its rocking, rad; of one that did not cross zero yet the largest angle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub last_peak: Option<f64>,
+    /// From when on it stands, s: 0, or when it settled; none of what flies or tumbles on.
+    #[serde(skip)]
+    pub(crate) stands_from: Option<f64>,
+    /// Of a block that rocks and has not been upright yet, nor turned back: its angle at the end, rad.
+    #[serde(skip)]
+    pub(crate) on_its_way: Option<f64>,
 }
 
 /// What is known of a block so far.
@@ -121,6 +127,8 @@ struct Seen {
     out: Option<(f64, Way)>,
     /// Since when it is below everything, s.
     sunk: Option<f64>,
+    /// From when on it stands, s: the start, or when it settled.
+    stands_from: Option<f64>,
     /// Where it began to stand along what carries it, m.
     stood: Option<f64>,
     /// How it stands, or would if it settled at its angle, once known.
@@ -245,7 +253,25 @@ impl Watched {
     }
 }
 
+/// Between which angles each block stands as it is placed, rad; none for one that can't overturn.
+pub(crate) fn points_of_no_return(scene: &Scene) -> Vec<Option<[f64; 2]>> {
+    let of = |block: &BlockScene| {
+        let began = match block.placement {
+            Placement::On { .. } => 0.0,
+            Placement::Free { angle, .. } => angle,
+        };
+        Some(Outline::of(block, scene.gravity)?.stance(began)?.tops())
+    };
+    scene.blocks.iter().map(of).collect()
+}
+
 impl Fates {
+    /// Between which angles each block stood, rad; none for one that can't overturn, or began in flight and didn't settle.
+    pub(crate) fn points_of_no_return(&self, watch: &Watch) -> Vec<Option<[f64; 2]>> {
+        let of = |(seen, watched): (&Seen, &Watched)| seen.stance(watched).map(|stance| stance.tops());
+        self.blocks.iter().zip(&watch.blocks).map(of).collect()
+    }
+
     /// Before the first step.
     pub(crate) fn start(
         &mut self,
@@ -261,7 +287,8 @@ impl Fates {
             // What was placed on something stands there, however far it is tilted.
             let tilt = if watched.on.is_some() { layout.tilt(number, &state.q) } else { 0.0 };
             let stood = if stands { watched.place(layout, number, state) } else { None };
-            self.blocks.push(Seen { began: stands.then_some(angle - tilt), angle, stood, ..Seen::default() });
+            let (began, stands_from) = (stands.then_some(angle - tilt), stands.then_some(state.t));
+            self.blocks.push(Seen { began, angle, stands_from, stood, ..Seen::default() });
         }
         self.look(watch, layout, state.t, state);
         Ok(())
@@ -419,6 +446,10 @@ impl Seen {
             slid,
             max_phi_over_alpha: self.part,
             last_peak: peak.filter(|_| what == Fate::Rocks).map(|peak| peak.phi),
+            stands_from: self.stands_from,
+            on_its_way: rocking
+                .filter(|monitor| what == Fate::Rocks && monitor.count() == 0)
+                .map(|_| layout.tilt(number, &state.q)),
         }
     }
 }

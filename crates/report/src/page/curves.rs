@@ -7,16 +7,17 @@
 use serde::{Deserialize, Serialize};
 use teeter_integrator::ContactState;
 
-/// The lowest and the highest value, each with its time.
+/// The lowest and the highest value, each with its time, and the last one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Extremes {
     low: (f64, f64),
     high: (f64, f64),
+    end: f64,
 }
 
 impl Extremes {
     fn of(t: f64, x: f64) -> Self {
-        Self { low: (t, x), high: (t, x) }
+        Self { low: (t, x), high: (t, x), end: x }
     }
 
     /// Takes later extremes in.
@@ -29,6 +30,7 @@ impl Extremes {
         if later.high.1 > self.high.1 {
             self.high = later.high;
         }
+        self.end = later.end;
     }
 
     fn in_order(self) -> [f64; 2] {
@@ -219,6 +221,33 @@ impl Curves {
         std::iter::once(self.start.1[column]).chain(points).collect()
     }
 
+    /// Whether a curve shows extremes in place of values: where a bucket has more steps than two points can show.
+    pub(crate) fn is_thinned(&self) -> bool {
+        self.stride > 2
+    }
+
+    /// The values of a quantity at some times in ascending order; none at a time within a bucket, of which only the extremes are known.
+    pub(crate) fn values(&self, column: usize, times: impl IntoIterator<Item = f64>) -> Vec<Option<f64>> {
+        let columns = self.start.1.len();
+        let mut from = 0;
+        let value = |t: f64| {
+            if t <= self.start.0 {
+                return Some(self.start.1[column]);
+            }
+            while self.buckets.get(from)?.last < t {
+                from += 1;
+            }
+            let (bucket, extremes) = (self.buckets[from], self.extremes[from * columns + column]);
+            match t {
+                t if t == bucket.last => Some(extremes.end),
+                // Of up to two steps both values are known.
+                t if t == bucket.first && bucket.steps <= 2 => Some(extremes.in_order()[0]),
+                _ => None,
+            }
+        };
+        times.into_iter().map(value).collect()
+    }
+
     /// Borders of the buckets, s: one more than there are buckets.
     pub(crate) fn borders(&self) -> Vec<f64> {
         std::iter::once(self.start.0).chain(self.buckets.iter().map(|bucket| bucket.last)).collect()
@@ -276,6 +305,20 @@ mod tests {
         let curves = run(10, 1_000_000, |t| if t == 123_457.0 { 7.0 } else { 0.0 });
         assert!(curves.times().len() <= 21);
         assert!(curves.curve(0).contains(&7.0));
+    }
+
+    #[test]
+    fn the_value_at_the_end_of_a_bucket_is_no_extreme_of_it() {
+        // A period of four steps, in buckets of eight.
+        let ringing = |t: f64| [0.5, 7.0, 0.25, -7.0][t as usize % 4];
+        let curves = run(4, 32, ringing);
+        assert!(curves.is_thinned() && curves.curve(0)[1..].iter().all(|x| x.abs() == 7.0));
+        let times = [0.0, 5.0, 8.0, 16.0, 24.0, 32.0, 33.0];
+        let known = Some(0.5);
+        assert_eq!(curves.values(0, times), [known, None, known, known, known, known, None]);
+        let short = run(4, 7, ringing);
+        let all = (0..=7).map(f64::from);
+        assert_eq!(short.values(0, all.clone()), all.map(|t| Some(ringing(t))).collect::<Vec<_>>());
     }
 
     #[test]

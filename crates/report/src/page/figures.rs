@@ -121,7 +121,7 @@ impl Plots<'_> {
     fn time_panel(&self, panel: &TimePanel) -> Panel {
         let borders = self.panels.curves.borders();
         let lines = panel.lines.iter().map(|line| {
-            let t = if line.at_borders { &borders } else { &self.t };
+            let t = if line.of.is_none() { &borders } else { &self.t };
             let points = t.iter().copied().zip(line.y.iter().copied());
             Series::line(&line.label, points).number(line.number)
         });

@@ -48,8 +48,17 @@ pub(crate) struct Line {
     /// Number of its colour.
     pub(crate) number: usize,
     pub(crate) y: Vec<f64>,
-    /// Whether its times are the borders of buckets, not those of the curves.
-    pub(crate) at_borders: bool,
+    /// The column of the curves whose it is, with what that is multiplied by; none where its times are the borders of
+    /// buckets, not those of the curves.
+    pub(crate) of: Option<(usize, f64)>,
+}
+
+impl Line {
+    /// A column of the curves, multiplied by `factor`.
+    fn of(curves: &Curves, column: usize, factor: f64, label: String, number: usize) -> Self {
+        let y = curves.curve(column).into_iter().map(|x| factor * x).collect();
+        Self { label, number, y, of: Some((column, factor)) }
+    }
 }
 
 /// A coordinate and its velocity, one over the other.

@@ -10,6 +10,7 @@ use super::scenery::Scenery;
 use crate::closed::Closed;
 use crate::contacts::slip;
 use crate::sections::{BeamRecord, Column, Kind, columns_of};
+use crate::verdict::points_of_no_return;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
@@ -138,6 +139,8 @@ pub struct PageRecorder {
     pub(crate) sections: Vec<Column>,
     /// What beams bore in the whole run; nothing before its end.
     pub(crate) beams: Vec<BeamRecord>,
+    /// Between which angles each block stood, rad; before the end of the run as it was placed.
+    pub(crate) points_of_no_return: Vec<Option<[f64; 2]>>,
     /// Values of the curves at the end of the step.
     row: Vec<f64>,
     bands: Bands,
@@ -188,6 +191,7 @@ impl PageRecorder {
             end: scene.time.steps() as f64 * scene.time.step,
             sections,
             beams: Vec::new(),
+            points_of_no_return: points_of_no_return(scene),
             row: vec![f64::NAN; columns],
             bands: Bands::default(),
             closings: ClosingMonitor::default(),

@@ -23,7 +23,7 @@ pub struct HalfCycle {
     pub housner: Option<f64>,
     /// The peak before, rad.
     pub peak_before: Option<f64>,
-    /// The peak after, rad; none where the run ends before it is complete.
+    /// The peak after, rad; none where the run ends before it is complete, or the block overturns.
     pub peak_after: Option<f64>,
     /// The block's critical angle, rad.
     pub alpha: f64,
@@ -71,11 +71,20 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
     for (number, block) in recorder.scenery.blocks.iter().enumerate() {
         // A polygon has no base to rock on that would say which of its corners land.
         let Some(alpha) = block.alpha else { continue };
+        let verdict = summary.verdict.iter().find(|verdict| verdict.body == block.name);
+        // What flies, tumbles or has fallen turns past φ = 0, too, and back, but doesn't rock.
+        let stands = verdict.map_or((0.0, f64::INFINITY), |verdict| {
+            (verdict.stands_from.unwrap_or(f64::INFINITY), verdict.overturned_at.unwrap_or(f64::INFINITY))
+        });
+        let stands = |t: f64| (stands.0..=stands.1).contains(&t);
         let touches_blocks = recorder.scenery.touches_blocks(number);
         let mut peaks = summary.peaks.iter().filter(|peak| peak.body == block.name).peekable();
         for crossing in summary.crossings.iter().filter(|crossing| crossing.body == block.name) {
             let before = peaks.next();
             let size = |peak: Option<&&PeakRow>| peak.map_or(0.0, |peak| peak.phi.abs());
+            if !stands(crossing.t) {
+                continue;
+            }
             if size(before.as_ref()).max(size(peaks.peek())) < LEAST * alpha {
                 continue;
             }
@@ -88,7 +97,7 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
             });
             // It bounced back, and passed the upright without an impact of its own.
             let omega = omega.filter(|omega| omega[0] * omega[1] >= 0.0);
-            let peak_after = peaks.peek().map(|peak| peak.phi);
+            let peak_after = peaks.peek().filter(|peak| stands(peak.t)).map(|peak| peak.phi);
             if omega.is_none() && !is_swing(before.map(|peak| peak.phi), peak_after, alpha) {
                 continue;
             }

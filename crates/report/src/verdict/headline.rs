@@ -20,7 +20,7 @@ pub(crate) fn headline(
     let mut text = match verdict {
         [] => deflected(state, deflections),
         few if few.len() <= FEW => {
-            few.iter().map(|of| format!("`{}` {}", of.body, one(scene, of))).collect::<Vec<_>>().join("; ")
+            few.iter().map(|of| format!("`{}` {}", of.body, one(scene, of, state.t))).collect::<Vec<_>>().join("; ")
         }
         many => all(many),
     };
@@ -69,8 +69,13 @@ fn time(t: f64) -> String {
     format!("t = {}", with_unit(t, "s"))
 }
 
-/// What became of a block, after its name.
-fn one(scene: &Scene, of: &BodyVerdict) -> String {
+/// An angle in degrees.
+fn angle(phi: f64) -> String {
+    format!("{}°", digits(phi.to_degrees()).replace('-', "\u{2212}"))
+}
+
+/// What became of a block up to the time `end` (s), after its name.
+fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     let at = of.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
     let way = of.way.map_or("", |way| way.word());
     let largest = of.max_phi_over_alpha.filter(|part| *part >= super::ROCKED);
@@ -95,10 +100,13 @@ fn one(scene: &Scene, of: &BodyVerdict) -> String {
         Fate::Rests => beside(format!("came to rest{at}")),
         Fate::Slid if of.rests_from.is_some() => beside(format!("{slid} and came to rest{at}")),
         Fate::Slid => beside(format!("slides on, {slid} so far")),
+        Fate::Rocks if of.on_its_way.is_some() => {
+            let now = of.on_its_way.map_or_else(String::new, angle);
+            let most = of.last_peak.map_or_else(String::new, |peak| format!(", largest {}{at}", angle(peak)));
+            format!("has not been upright yet, too short a run to tell how it rocks: φ {now} at {}{most}", time(end))
+        }
         Fate::Rocks => {
-            let peak = of.last_peak.map_or_else(String::new, |peak| {
-                format!(", last peak {}°{at}", digits(peak.to_degrees()).replace('-', "\u{2212}"))
-            });
+            let peak = of.last_peak.map_or_else(String::new, |peak| format!(", last peak {}{at}", angle(peak)));
             let drift = of.slid.is_some_and(|_| has_slid(scene, of));
             let drift = if drift { format!(", {slid}") } else { String::new() };
             beside(format!("rocks on{peak}{drift}"))

@@ -131,6 +131,11 @@ impl Stance {
         }
     }
 
+    /// The points of no return, to the right and to the left, rad.
+    pub(crate) fn tops(&self) -> [f64; 2] {
+        [self.right.top, self.left.top]
+    }
+
     /// |φ|/α at an angle (rad) on ground with a slope (rad): the way from standing flat there to the point of no return, in parts; `None` where the
     /// slope alone is past it.
     pub(crate) fn part(&self, angle: f64, slope: f64) -> Option<f64> {

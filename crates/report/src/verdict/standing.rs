@@ -137,6 +137,7 @@ impl Seen {
         if state.t - since >= SETTLED * watched.still_time {
             // Found anew from this angle, as it will be after a pause.
             (self.began, self.settling, self.stance) = (Some(at), None, KnownStance(None));
+            self.stands_from = Some(since);
             self.stood = watched.place(layout, number, state);
         }
     }

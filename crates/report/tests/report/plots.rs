@@ -173,3 +173,41 @@ fn a_portrait_is_as_smooth_as_the_motion() {
     let (off, impacts) = (off.count(), run.summary.impacts.len());
     assert!(off <= 2 * impacts && impacts < 60, "{off} of {} with {impacts} impacts", phi.len());
 }
+
+#[test]
+fn where_a_curve_shows_extremes_the_values_at_the_pictures_are_those_of_the_trajectory() {
+    let text = "[time]\nend = '2 s'\nstep = '100 us'\n[beam.t]\nsection = 'direct'\nbending_stiffness = '1 N m^2'\n\
+        mass_per_length = '0.066 kg/m'\nspan = '1 m'\nelements = 4\nstart = { mode = 3, amplitude = '1 mm' }\n\
+        probes = ['20 cm']\n[output]\nevery = '100 us'\n";
+    let run = run("ringing", text);
+    let page = data(&run.html);
+    assert_eq!(page["curves"]["thinned"], true);
+    let series = &panel(&page, "w_mid").unwrap()["series"][0];
+    let at: Vec<usize> = series["other_at"].as_array().unwrap().iter().map(|x| x.as_u64().unwrap() as usize).collect();
+    let (others, t) = (numbers(&series["others"]), numbers(&page["frames"]["t"]));
+    assert!(others.len() == at.len() && others.len() > 50, "{}", others.len());
+    let trajectory = table(&run.folder.join("trajectory.csv"));
+    let of = |name: &str| &trajectory.iter().find(|(column, _)| column == name).unwrap().1;
+    let (times, w) = (of("t"), of("t.w_mid"));
+    let mut picture = 0;
+    for (after, shown) in at.into_iter().zip(others) {
+        picture += after;
+        let row = times.iter().position(|row| (row - t[picture]).abs() < 1e-9).unwrap();
+        let millimetres = 1e3 * w[row];
+        assert!((shown - millimetres).abs() <= 1e-4 * millimetres.abs(), "{shown} at {}, {millimetres}", t[picture]);
+    }
+}
+
+#[test]
+fn lines_of_a_plot_are_where_a_block_that_lies_on_its_side_overturns() {
+    let text = "[time]\nend = '100 ms'\nstep = '1 ms'\n[ground]\n[material.m]\ndensity = '2500 kg/m^3'\n[block.slab]\nmaterial = 'm'\n\
+        width = '3 cm'\nheight = '6 cm'\ndepth = '3 cm'\nposition = ['0 m', '3 cm']\nangle = '80 deg'\n[contact.feet]\n\
+        between = ['slab', 'ground']\nfriction = 0.5\n";
+    let page = data(&run("on-its-side", text).html);
+    let guides = numbers(&page["portraits"][0]["guides"]);
+    let beta = 2.0_f64.atan().to_degrees();
+    assert!(
+        guides.len() == 2 && (guides[0] - 90.0 + beta).abs() < 1e-3 && (guides[1] - 90.0 - beta).abs() < 1e-3,
+        "{guides:?}"
+    );
+}

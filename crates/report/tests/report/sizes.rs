@@ -116,3 +116,25 @@ fn half_cycles_name_their_block_and_tell_housner_only_of_one_that_stands_alone()
     let alone = table(&scenario("free-rocking-on-ground").html).unwrap();
     assert!(!alone.contains(">Block</th>") && alone.contains("<td>0.9294</td>"), "{alone}");
 }
+
+#[test]
+fn what_tumbles_has_no_half_cycles_and_a_run_too_short_says_so() {
+    let scene = |end: &str, height: &str, place: &str| {
+        format!(
+            "[time]\nend = '{end}'\nstep = '500 us'\n[ground]\n[material.m]\ndensity = '2500 kg/m^3'\n[block.cube]\nmaterial = 'm'\n\
+             width = '6 cm'\nheight = '{height}'\ndepth = '6 cm'\n{place}\n[contact.floor]\nbetween = ['cube', 'ground']\n\
+             friction = 0.5\nrestitution = 0.6\n"
+        )
+    };
+    // It turns to and fro about the upright as it hits the ground, without ever standing.
+    let flies = "position = ['0 m', '10 cm']\nangle = '8 deg'\nspin = '-2 rad/s'";
+    let tumbling = run("tumbling", &scene("600 ms", "6 cm", flies));
+    assert!(!tumbling.summary.crossings.is_empty());
+    let stands = tumbling.summary.max_phi_over_alpha.is_some();
+    assert!(!stands && teeter_report::half_cycles(&tumbling.page, &tumbling.summary).is_empty());
+    let short = run("short", &scene("1 ms", "24 cm", "on = 'ground'\nat = '0 m'\ntilt = '5 deg'"));
+    assert_eq!(
+        short.summary.headline,
+        "`cube` has not been upright yet, too short a run to tell how it rocks: φ 5° at t = 1 ms, largest 5° at t = 0 s"
+    );
+}

@@ -47,7 +47,7 @@ impl Panels {
                 label: point.label.clone(),
                 number: *number,
                 y: std::iter::once(0.0).chain(forces.slip.iter().map(|slip| factor * slip)).collect(),
-                at_borders: true,
+                of: None,
             });
             panels.push(TimePanel {
                 id: format!("slip-{pair}"),
@@ -90,22 +90,23 @@ impl Panels {
             (Kind::Reaction, "Reactions of the supports", "reaction at", "N", force),
             (Kind::ReactionCouple, "Couples of the supports", "couple of the support at", "N m", moment),
         ] {
-            let mut lines = Vec::new();
+            let mut drawn = Vec::new();
             let of_kind = columns.iter().zip(&values).filter(|((column, _), _)| column.kind == kind);
-            for (number, ((column, _), values)) in of_kind.enumerate() {
+            for (number, ((column, k), values)) in of_kind.enumerate() {
                 let label = recorder.section_label(column);
                 if holds(largest(values), scale) {
-                    lines.push(Line { label, number, y: values.clone(), at_borders: false });
+                    drawn.push((*k, label, number, values));
                 } else {
                     self.leave_out(of, (!label.is_empty()).then_some((label, "places")), largest(values), unit);
                 }
             }
-            if lines.is_empty() {
+            if drawn.is_empty() {
                 continue;
             }
-            let most = largest(lines.iter().flat_map(|line| &line.y));
+            let most = largest(drawn.iter().flat_map(|(.., values)| *values));
             let (prefix, factor) = if kind == Kind::Stress { ("M", 1e-6) } else { prefix(most) };
-            lines.iter_mut().for_each(|line| line.y.iter_mut().for_each(|y| *y *= factor));
+            let line = |(column, label, number, _)| Line::of(&self.curves, column, factor, label, number);
+            let lines = drawn.into_iter().map(line).collect();
             let id =
                 serde_json::to_value(kind).ok().and_then(|word| word.as_str().map(str::to_owned)).unwrap_or_default();
             self.panels.push(TimePanel {
@@ -126,33 +127,34 @@ impl Panels {
     pub(super) fn energies(&mut self, recorder: &PageRecorder) {
         let first = recorder.scenery.energy_column();
         let of = |curves: &Curves, name: &str| {
-            let column = ENERGIES.iter().position(|known| *known == name).unwrap_or(0);
-            curves.curve(first + column)
+            let column = first + ENERGIES.iter().position(|known| *known == name).unwrap_or(0);
+            (column, curves.curve(column))
         };
         let energies = [("kinetic", 0), ("elastic", 1), ("gravity", 2), ("total", 6)];
         let energies =
             energies.into_iter().filter(|(name, _)| *name != "elastic" || !recorder.scenery.beams.is_empty());
         let energies: Vec<_> = energies.map(|(name, number)| (name, number, of(&self.curves, name))).collect();
-        let scale = largest(energies.iter().flat_map(|(.., values)| values)).max(recorder.scenery.weight_energy);
+        let scale = largest(energies.iter().flat_map(|(.., (_, values))| values)).max(recorder.scenery.weight_energy);
         let works = ["contact", "friction", "viscous", "numerical", "external", "projection"];
         let works: Vec<_> = works.into_iter().enumerate().map(|(k, name)| (name, k, of(&self.curves, name))).collect();
         for (id, title, all) in [("energy", "Energy", energies), ("works", "Work since t = 0", works)] {
-            let mut lines = Vec::new();
-            for (name, number, values) in all {
+            let mut drawn = Vec::new();
+            for (name, number, (column, values)) in all {
                 if holds(largest(&values), scale) {
                     let label = if name == "gravity" { "gravity, change" } else { name }.to_owned();
-                    lines.push(Line { label, number, y: values, at_borders: false });
+                    drawn.push((column, label, number, values));
                 } else {
                     let what = if id == "energy" { "energy:" } else { "work:" };
                     self.leave_out(what, Some((name.to_owned(), "")), largest(&values), "J");
                 }
             }
-            if lines.is_empty() {
+            if drawn.is_empty() {
                 continue;
             }
-            let most = largest(lines.iter().flat_map(|line| &line.y));
+            let most = largest(drawn.iter().flat_map(|(.., values)| values));
             let (prefix, factor) = prefix(most);
-            lines.iter_mut().for_each(|line| line.y.iter_mut().for_each(|y| *y *= factor));
+            let line = |(column, label, number, _)| Line::of(&self.curves, column, factor, label, number);
+            let lines = drawn.into_iter().map(line).collect();
             self.panels.push(TimePanel {
                 id: id.to_owned(),
                 of_contact: None,

@@ -1,6 +1,7 @@
 //! Plots of how blocks, beams, ground and supports move.
 
-use super::{Line, Panels, Place, Portrait, PortraitLine, TimePanel, length_unit};
+use super::{Curves, Line, Panels, Place, Portrait, PortraitLine, TimePanel, length_unit};
+use crate::driven::Driven;
 use crate::page::content::{ROUNDING, holds, largest, travel};
 use crate::page::orbit::Point;
 use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, PageRecorder};
@@ -83,11 +84,8 @@ impl Panels {
             };
             // Wide enough that what is at rest looks so, and rounding on top of it isn't seen.
             let least = if c == PHI { 4e-5 * factor } else { 1e-4 * reach * factor };
-            let line = |k: usize, values: &[f64], factor: f64| Line {
-                label: block_label(recorder, k),
-                number: k,
-                y: values.iter().map(|x| factor * x).collect(),
-                at_borders: false,
+            let line = |curves: &Curves, k: usize, c: usize, factor: f64| {
+                Line::of(curves, BLOCK_COLUMNS * k + c, factor, block_label(recorder, k), k)
             };
             let guides = if c == PHI { critical_angles(recorder, &moving, factor) } else { Vec::new() };
             let panel = |id: &str, title: &str, unit: String, lines, guides, least| TimePanel {
@@ -102,7 +100,7 @@ impl Panels {
                 place: Place::Motion,
                 lines,
             };
-            let lines = moving.iter().map(|(k, values)| line(*k, values, factor)).collect();
+            let lines = moving.iter().map(|(k, _)| line(&self.curves, *k, c, factor)).collect();
             self.panels.push(panel(coordinate.id, coordinate.name, unit.to_owned(), lines, guides, least));
             let rates: Vec<_> =
                 moving.iter().map(|(k, _)| (*k, self.curves.curve(BLOCK_COLUMNS * k + 3 + c))).collect();
@@ -111,7 +109,7 @@ impl Panels {
             } else {
                 length_unit(display.length, largest(rates.iter().flat_map(|(_, values)| values)))
             };
-            let lines = rates.iter().map(|(k, values)| line(*k, values, factor)).collect();
+            let lines = rates.iter().map(|(k, _)| line(&self.curves, *k, 3 + c, factor)).collect();
             let least = if c == PHI { 2e-3 } else { 1e-4 * reach * factor };
             let unit = format!("{unit}/s");
             self.panels.push(panel(coordinate.velocity_id, coordinate.velocity_name, unit, lines, Vec::new(), least));
@@ -136,7 +134,7 @@ impl Panels {
                 let label = if several { format!("{} {place}", beam.name) } else { place.clone() };
                 let what = if k > 0 || beam.probed_middle { "w at the probe" } else { "w at" };
                 if holds(largest(&values), 1e-3 * beam.span) {
-                    drawn.push((label, values));
+                    drawn.push((label, first + k, values));
                 } else {
                     self.leave_out(what, Some((label, "places")), largest(&values), "m");
                 }
@@ -145,15 +143,14 @@ impl Panels {
         if drawn.is_empty() {
             return;
         }
-        let (unit, factor) = length_unit(scenery.display.length, largest(drawn.iter().flat_map(|(_, values)| values)));
+        let (unit, factor) = length_unit(scenery.display.length, largest(drawn.iter().flat_map(|(.., values)| values)));
         let span = scenery.beams.iter().fold(0.0, |longest: f64, beam| beam.span.max(longest));
         let only_middle = drawn.len() == 1 && !several && drawn[0].0.starts_with("midspan");
-        let lines = drawn.into_iter().enumerate().map(|(number, (label, values))| Line {
-            label: if only_middle { String::new() } else { label },
-            number,
-            y: values.into_iter().map(|w| factor * w).collect(),
-            at_borders: false,
+        let lines = drawn.into_iter().enumerate().map(|(number, (label, column, _))| {
+            let label = if only_middle { String::new() } else { label };
+            Line::of(&self.curves, column, factor, label, number)
         });
+        let lines = lines.collect();
         self.panels.push(TimePanel {
             id: "w_mid".to_owned(),
             of_contact: None,
@@ -164,7 +161,7 @@ impl Panels {
             guides: Vec::new(),
             cut: false,
             place: Place::Motion,
-            lines: lines.collect(),
+            lines,
         });
     }
 
@@ -180,32 +177,29 @@ impl Panels {
                 .into_iter()
                 .enumerate()
             {
-                let mut lines: Vec<Line> = of_kind()
+                let moving: Vec<_> = of_kind()
                     .enumerate()
-                    .map(|(number, (which, driven))| {
-                        let axis = COORDINATES[driven.component].symbol;
-                        let name = driven.name.replace('.', " ");
-                        let label = if several { format!("{name} {axis}") } else { axis.to_owned() };
-                        Line {
-                            label,
-                            number,
-                            y: self.curves.curve(scenery.driven_column(which) + k),
-                            at_borders: false,
-                        }
-                    })
-                    .filter(|line| largest(&line.y) > 0.0)
+                    .map(|(number, (which, driven))| (number, driven, scenery.driven_column(which) + k))
+                    .map(|(number, driven, column)| (number, driven, column, largest(&self.curves.curve(column))))
+                    .filter(|(.., largest)| *largest > 0.0)
                     .collect();
-                if lines.is_empty() {
+                if moving.is_empty() {
                     continue;
                 }
-                let most = largest(lines.iter().flat_map(|line| &line.y));
+                let most = moving.iter().fold(0.0, |most: f64, (.., largest)| most.max(*largest));
                 let (unit, factor) = match (turns, k) {
                     (true, 0) => (display.angle.symbol(), display.angle.per_radian()),
                     (true, _) => ("rad", 1.0),
                     (false, 2) => ("m", 1.0),
                     (false, _) => length_unit(display.length, most),
                 };
-                lines.iter_mut().for_each(|line| line.y.iter_mut().for_each(|y| *y *= factor));
+                let line = |(number, driven, column, _): (usize, &Driven, usize, f64)| {
+                    let axis = COORDINATES[driven.component].symbol;
+                    let name = driven.name.replace('.', " ");
+                    let label = if several { format!("{name} {axis}") } else { axis.to_owned() };
+                    Line::of(&self.curves, column, factor, label, number)
+                };
+                let lines = moving.into_iter().map(line).collect();
                 let what = if several { "Prescribed" } else { "Ground" };
                 let title = format!("{what} {}{title}", if turns { "angular " } else { "" });
                 let title = title.replace("angular displacement", "angle");
@@ -271,10 +265,8 @@ impl Panels {
             };
             let coordinate = &COORDINATES[c];
             let reach = blocks().map(|k| recorder.scenery.blocks[k].reach).fold(0.0, f64::max);
-            let alphas = blocks().filter_map(|k| recorder.scenery.blocks[k].alpha).filter(|_| c == PHI);
-            let mut guides: Vec<f64> = alphas.flat_map(|alpha| [-alpha * factors[0], alpha * factors[0]]).collect();
-            guides.sort_by(f64::total_cmp);
-            guides.dedup();
+            let tops = blocks().filter_map(|k| recorder.points_of_no_return[k]).filter(|_| c == PHI);
+            let guides = guides(tops.flatten(), factors[0]);
             let portrait = Portrait {
                 id: ["phase_x", "phase_y", "phase"][c],
                 title: format!("Phase portrait: {} over {}", coordinate.velocity_symbol, coordinate.symbol),
@@ -297,14 +289,26 @@ fn block_label(recorder: &PageRecorder, k: usize) -> String {
     if blocks.len() > 1 { blocks[k].name.clone() } else { String::new() }
 }
 
-/// The critical angles, where the motion comes near them: elsewhere they would only squeeze the curve.
+/// A block has come near the point of no return when it has turned by this part of the way there.
+const NEAR: f64 = 0.8;
+
+/// The points of no return, where the motion comes near them: elsewhere they would only squeeze the curve.
 fn critical_angles(recorder: &PageRecorder, moving: &[(usize, Vec<f64>)], factor: f64) -> Vec<f64> {
     let near = |(k, values): &(usize, Vec<f64>)| {
-        recorder.scenery.blocks[*k].alpha.filter(|alpha| largest(values) > 0.8 * alpha)
+        let [right, left] = recorder.points_of_no_return[*k]?;
+        let (middle, room) = (0.5 * (left + right), 0.5 * (left - right));
+        values.iter().any(|phi| (phi - middle).abs() > NEAR * room).then_some([right, left])
     };
-    let mut guides: Vec<f64> =
-        moving.iter().filter_map(near).flat_map(|alpha| [-alpha * factor, alpha * factor]).collect();
+    guides(moving.iter().filter_map(near).flatten(), factor)
+}
+
+/// Lines across a plot at these angles, rad, in ascending order, each once.
+fn guides(angles: impl Iterator<Item = f64>, factor: f64) -> Vec<f64> {
+    let mut guides: Vec<f64> = angles.map(|angle| factor * angle).collect();
     guides.sort_by(f64::total_cmp);
-    guides.dedup();
+    guides.dedup_by(|a, b| (*a - *b).abs() <= SAME * factor);
     guides
 }
+
+/// Angles that differ by less are the same, rad.
+const SAME: f64 = 1e-6;

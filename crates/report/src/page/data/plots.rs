@@ -1,0 +1,203 @@
+//! The plots over time, the phase portraits and the contact forces.
+
+use super::{course, digits, time};
+use crate::page::panels::{Line, Panels, Place};
+use crate::page::recorder::PageRecorder;
+use crate::page::{means, rounded};
+use crate::with_digits;
+use serde::Serialize;
+use teeter_integrator::ContactState;
+
+/// A plot over time.
+#[derive(Serialize)]
+pub(super) struct PanelData {
+    id: String,
+    title: String,
+    unit: String,
+    least: f64,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    guides: Vec<f64>,
+    /// Whether the peaks of impacts are cut.
+    cut: bool,
+    /// The contact whose it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contact: Option<usize>,
+    /// Whether it stands after the contacts.
+    late: bool,
+    series: Vec<SeriesData>,
+}
+
+#[derive(Serialize)]
+struct SeriesData {
+    label: String,
+    index: usize,
+    /// Whether its times are the borders of the forces, not those of the curves.
+    at_borders: bool,
+    y: Vec<f64>,
+    /// The pictures at which the value is another than the curve's, which shows the extremes of many steps: each counted from
+    /// the one before, the first from 0; and the values there.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    other_at: Vec<usize>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    others: Vec<Option<f64>>,
+}
+
+impl SeriesData {
+    fn of(line: &Line, recorder: &PageRecorder, panels: &Panels, least: f64) -> Self {
+        let (mut other_at, mut others, mut before) = (Vec::new(), Vec::new(), 0);
+        if let Some((column, factor)) = line.of.filter(|_| panels.curves.is_thinned()) {
+            let pictures = || recorder.kept.frames.rows().map(|(t, _)| t);
+            // More of them than are drawn.
+            let values = recorder.kept.curves.values(column, pictures());
+            let drawn = linear(&panels.curves.times(), &line.y, pictures());
+            for (picture, (value, drawn)) in values.into_iter().zip(drawn).enumerate() {
+                let value = value.map(|value| factor * value);
+                if value.is_some_and(|x| (x - drawn).abs() <= READ * x.abs().max(least)) {
+                    continue;
+                }
+                other_at.push(picture - before);
+                others.push(value.map(|x| rounded(x, 5)));
+                before = picture;
+            }
+        }
+        let y = course(line.y.iter());
+        Self { label: line.label.clone(), index: line.number, at_borders: line.of.is_none(), y, other_at, others }
+    }
+}
+
+/// A curve's value is read off to this part of itself.
+const READ: f64 = 5e-4;
+
+/// A curve through points at ascending times, linear between them, at other ascending times.
+fn linear(t: &[f64], y: &[f64], at: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut from = 0;
+    let value = |x: f64| {
+        while from + 2 < t.len() && t[from + 1] <= x {
+            from += 1;
+        }
+        match (t.get(from + 1), y.get(from + 1)) {
+            (Some(&end), Some(&last)) if end > t[from] => {
+                y[from] + ((x - t[from]) / (end - t[from])).clamp(0.0, 1.0) * (last - y[from])
+            }
+            _ => y[from],
+        }
+    };
+    at.map(value).collect()
+}
+
+/// A coordinate and its velocity, at times of their own.
+#[derive(Serialize)]
+pub(super) struct PortraitData {
+    id: &'static str,
+    title: String,
+    x_label: String,
+    unit: String,
+    least: [f64; 2],
+    guides: Vec<f64>,
+    series: Vec<PortraitSeries>,
+}
+
+#[derive(Serialize)]
+struct PortraitSeries {
+    label: String,
+    index: usize,
+    t: Vec<f64>,
+    x: Vec<f64>,
+    y: Vec<f64>,
+}
+
+/// Means between the times `borders`.
+#[derive(Serialize)]
+pub(super) struct ForceData {
+    borders: Vec<f64>,
+    /// Of the unit in which they are plotted: its prefix, and by what N are multiplied.
+    prefix: &'static str,
+    factor: f64,
+    /// Length of the windows of `mean`, with its unit.
+    window: String,
+    /// Contacts whose tangential forces are rounding.
+    frictionless: Vec<usize>,
+    points: Vec<PointForces>,
+}
+
+#[derive(Serialize)]
+struct PointForces {
+    contact: usize,
+    point: usize,
+    normal: Vec<f64>,
+    /// The mean of `normal` over windows about the borders, where it differs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mean: Option<Vec<f64>>,
+    tangential: Vec<f64>,
+    /// A letter a value: `o` open, `k` stick, `l` slip.
+    state: String,
+}
+
+pub(super) fn time_panels(recorder: &PageRecorder, panels: &Panels) -> Vec<PanelData> {
+    let panel = |panel: &crate::page::panels::TimePanel| PanelData {
+        id: panel.id.clone(),
+        title: match &panel.of_contact {
+            Some((_, name)) if !name.is_empty() => format!("{}, {name}", panel.title),
+            _ => panel.title.clone(),
+        },
+        contact: panel.of_contact.as_ref().map(|(pair, _)| *pair),
+        unit: panel.unit.clone(),
+        least: digits(panel.least),
+        guides: panel.guides.iter().copied().map(digits).collect(),
+        cut: panel.cut,
+        late: panel.place == Place::Forces,
+        series: panel.lines.iter().map(|line| SeriesData::of(line, recorder, panels, panel.least)).collect(),
+    };
+    panels.panels.iter().map(panel).collect()
+}
+
+pub(super) fn portraits(panels: &Panels) -> Vec<PortraitData> {
+    let portrait = |portrait: &crate::page::panels::Portrait| PortraitData {
+        id: portrait.id,
+        title: portrait.title.clone(),
+        x_label: format!("{} ({})", portrait.x_label, portrait.x_unit),
+        unit: portrait.y_unit.clone(),
+        least: portrait.least.map(digits),
+        guides: portrait.guides.iter().copied().map(digits).collect(),
+        series: portrait
+            .lines
+            .iter()
+            .map(|line| {
+                let [x, y] = [&line.x, &line.v].map(|values| course(values.iter()));
+                let t = line.t.iter().copied().map(time).collect();
+                PortraitSeries { label: line.label.clone(), index: line.number, t, x, y }
+            })
+            .collect(),
+    };
+    panels.portraits.iter().map(portrait).collect()
+}
+
+pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
+    let window = means::window(&panels.curves);
+    let contacts = recorder.scenery.contacts.iter().enumerate();
+    let all = contacts.flat_map(|(contact, drawn)| (0..drawn.points.len()).map(move |point| (contact, drawn, point)));
+    let points = all.filter_map(|(contact, drawn, point)| {
+        let forces = panels.forces[drawn.first + point].as_ref()?;
+        let state = forces.state.iter().map(|state| match state {
+            ContactState::Open => 'o',
+            ContactState::Stick => 'k',
+            ContactState::Slip => 'l',
+        });
+        Some(PointForces {
+            contact,
+            point,
+            normal: forces.normal.iter().copied().map(digits).collect(),
+            mean: means::normal(&panels.curves, forces, window).map(|means| means.into_iter().map(digits).collect()),
+            tangential: forces.tangential.iter().copied().map(digits).collect(),
+            state: state.collect(),
+        })
+    });
+    ForceData {
+        borders: panels.curves.borders().into_iter().map(time).collect(),
+        prefix: panels.force_unit.0,
+        factor: panels.force_unit.1,
+        window: with_digits(window, "s", 3),
+        frictionless: (0..panels.tangential.len()).filter(|pair| !panels.tangential[*pair]).collect(),
+        points: points.collect(),
+    }
+}

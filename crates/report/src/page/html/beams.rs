@@ -1,0 +1,96 @@
+//! What beams bore: deflected shapes, stress, envelopes, reactions.
+
+use crate::page::recorder::PageRecorder;
+use crate::page::{rounded, span};
+use crate::{Summary, with_digits};
+use std::fmt::Write;
+use teeter_plot::escaped;
+
+/// The deflected shapes at chosen times.
+pub(super) fn shapes(recorder: &PageRecorder) -> String {
+    let figure = span::on_page("shapes", |id| span::shapes(recorder, id));
+    figure.map_or_else(String::new, |figure| {
+        format!(
+            "<section id=\"shapes\" class=\"panel\" aria-labelledby=\"shapes-title\">\n\
+             <h3 id=\"shapes-title\">Deflected shape at chosen times</h3>\n{figure}</section>"
+        )
+    })
+}
+
+/// What beams bore: largest stress, reactions, envelopes.
+pub(super) fn borne(recorder: &PageRecorder, summary: &Summary) -> String {
+    let mut html = String::new();
+    let several = summary.beams.len() > 1;
+    let stresses = summary.beams.iter().filter_map(|borne| {
+        let largest = borne.largest_stress?;
+        let part = borne.part_of_yield_strength.map(|part| {
+            let class = if part > 1.0 { " class=\"bad\"" } else { "" };
+            format!(", <span{class}>{} % of the yield strength</span>", rounded(100.0 * part, 3))
+        });
+        let name = if several { format!("{}: ", escaped(&borne.beam)) } else { String::new() };
+        Some(format!(
+            "<p data-beam=\"{}\" data-stress=\"{}\">{name}largest normal stress {} at x = {}, t = {}{}</p>\n",
+            escaped(&borne.beam),
+            largest.stress,
+            with_digits(largest.stress, "Pa", 4),
+            with_digits(largest.x, "m", 4),
+            with_digits(largest.t, "s", 6),
+            part.unwrap_or_default()
+        ))
+    });
+    let stresses: String = stresses.collect();
+    if !stresses.is_empty() {
+        let _ = writeln!(
+            html,
+            "<section id=\"stress\" class=\"panel\" aria-labelledby=\"stress-title\">\n<h3 id=\"stress-title\">Stress</h3>\n\
+             {stresses}</section>"
+        );
+    }
+    if let Some(figure) = span::on_page("envelopes", |id| span::envelopes(recorder, id)) {
+        let _ = writeln!(
+            html,
+            "<section id=\"envelopes\" class=\"panel\" aria-labelledby=\"envelopes-title\">\n<h3 id=\"envelopes-title\">Moment \
+             and transverse force over the span, least and largest of all steps</h3>\n{figure}</section>"
+        );
+    }
+    html.push_str(&reactions(summary));
+    html
+}
+
+fn reactions(summary: &Summary) -> String {
+    let supports: Vec<_> =
+        summary.beams.iter().flat_map(|borne| borne.reactions.iter().map(|range| (&borne.beam, range))).collect();
+    if supports.is_empty() {
+        return String::new();
+    }
+    let several = summary.beams.len() > 1;
+    let mut html = "<section id=\"reactions\" class=\"panel\" aria-labelledby=\"reactions-title\">\n\
+        <h3 id=\"reactions-title\">Reactions of the supports</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"group\" \
+        aria-labelledby=\"reactions-title\"><table>\n<thead><tr>"
+        .to_owned();
+    html.push_str(if several { "<th scope=\"col\">Beam</th>" } else { "" });
+    html.push_str("<th scope=\"col\">x<br><small>m</small></th>");
+    // Pinned ends have none.
+    let turned = supports.iter().any(|(_, range)| range.couple != [0.0; 2]);
+    let columns = [("Force", "N"), ("Couple", "N m")];
+    for (what, unit) in &columns[..if turned { 2 } else { 1 }] {
+        for when in ["at the start", "least", "largest"] {
+            let _ = write!(html, "<th scope=\"col\">{what} {when}<br><small>{unit}</small></th>");
+        }
+    }
+    html.push_str("</tr></thead>\n<tbody>\n");
+    let cell = |x: f64| format!("<td>{}</td>", rounded(x, 4).to_string().replace('-', "\u{2212}"));
+    for (beam, range) in supports {
+        let name = escaped(beam);
+        let head = if several { format!("<th scope=\"row\">{name}</th>") } else { String::new() };
+        let ([force, couple], [low, high], [least, most]) = (range.start, range.force, range.couple);
+        let cells = [range.x, force, low, high, couple, least, most];
+        let cells: String = cells[..if turned { 7 } else { 4 }].iter().copied().map(cell).collect();
+        let _ = writeln!(html, "<tr data-beam=\"{name}\" data-x=\"{}\">{head}{cells}</tr>", range.x);
+    }
+    html.push_str(
+        "</tbody></table></div>\n<p class=\"note\">Of the support on the beam: force upwards, couple counter-clockwise. Means over a \
+         step: an impact\u{2019}s peak grows as the step shrinks.</p>\n</section>",
+    );
+    html
+}

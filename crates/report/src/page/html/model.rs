@@ -1,0 +1,44 @@
+//! What was modelled.
+
+use super::with_code;
+use crate::Summary;
+use crate::summary::{BeamSummary, RemovedSummary};
+use std::fmt::Write;
+use teeter_plot::escaped;
+
+pub(super) fn model(summary: &Summary) -> String {
+    let model = &summary.model;
+    let list = |words: &[String]| {
+        if words.is_empty() { "none".to_owned() } else { escaped(&words.join(", ")) }
+    };
+    let beams: Vec<String> = model
+        .beams
+        .iter()
+        .map(|beam| {
+            let BeamSummary { name, elements, dofs, theory, backend, shapes } = beam;
+            let shapes = shapes.map_or_else(String::new, |shapes| {
+                let corrections = match shapes.corrections {
+                    0 => String::new(),
+                    n => format!(" and {n} static corrections"),
+                };
+                format!(" in {} modes{corrections}", shapes.modes)
+            });
+            format!("{name} ({theory}, {elements} elements{shapes}, {dofs} dofs, {backend})")
+        })
+        .collect();
+    let mut html = String::new();
+    let mut row = |name: &str, text: &str| _ = writeln!(html, "<div><dt>{name}</dt><dd>{text}</dd></div>");
+    row("Blocks", &list(&model.blocks));
+    row("Beams", &list(&beams));
+    row("Ground", if model.ground { "rigid" } else { "none" });
+    row("Contacts", &format!("{}; {} possible contacts", list(&model.contacts), model.possible_contacts));
+    row("Degrees of freedom", &model.dofs.to_string());
+    if !model.left_out.is_empty() {
+        row("Left out", &model.left_out.iter().map(|text| escaped(text)).collect::<Vec<_>>().join("<br>"));
+    }
+    if !model.removed.is_empty() {
+        let told = |removed: &RemovedSummary| format!("{}: {}", with_code(&removed.what), with_code(&removed.why));
+        row("Not needed", &model.removed.iter().map(told).collect::<Vec<_>>().join("<br>"));
+    }
+    html
+}

@@ -1,0 +1,92 @@
+//! The table of half cycles.
+
+use crate::page::recorder::PageRecorder;
+use crate::page::rocking::HalfCycle;
+use std::fmt::Write;
+use teeter_plot::escaped;
+
+/// Rows of the table; the rest is in `summary.json`.
+const ROWS: usize = 300;
+
+/// Rows that are seen without unfolding the others.
+const UNFOLDED: usize = 20;
+
+/// Decimals with which the largest of the values of a column has so many digits.
+fn decimals(values: impl Iterator<Item = f64>, digits: i32) -> usize {
+    let largest = values.fold(0.0, |most: f64, x| most.max(x.abs()));
+    if largest > 0.0 { (digits - 1 - largest.log10().floor() as i32).clamp(0, 12) as usize } else { 0 }
+}
+
+pub(super) fn rocking(cycles: &[HalfCycle], recorder: &PageRecorder, dt: f64) -> String {
+    if cycles.is_empty() {
+        return String::new();
+    }
+    let mut html = "<section id=\"rocking\" class=\"panel\" aria-labelledby=\"rocking-title\">\n\
+        <h3 id=\"rocking-title\">Rocking, half cycle by half cycle</h3>\n"
+        .to_owned();
+    let scenery = &recorder.scenery;
+    // With one block its name would be a column of repetitions.
+    let several = scenery.blocks.len() > 1;
+    let (angle_unit, per_radian) = (scenery.display.angle.symbol(), scenery.display.angle.per_radian());
+    // A step is told from the next.
+    let of_times = decimals(std::iter::once(dt), 2).max(5);
+    let of_rates = decimals(cycles.iter().filter_map(|cycle| cycle.omega).flatten(), 5);
+    let of_peaks = decimals(cycles.iter().filter_map(|cycle| cycle.peak_after).map(|peak| peak * per_radian), 4);
+    let mut head =
+        "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"rocking-title\"><table>\n<thead><tr>"
+            .to_owned();
+    head.push_str(if several { "<th scope=\"col\">Block</th>" } else { "" });
+    head.push_str(
+        &"<th scope=\"col\">φ = 0 at<br><small>s</small></th><th scope=\"col\">φ̇⁻<br><small>rad/s</small></th>\
+        <th scope=\"col\">φ̇⁺<br><small>rad/s</small></th><th scope=\"col\">φ̇⁺/φ̇⁻</th>\
+        <th scope=\"col\">Housner</th><th scope=\"col\">Next peak<br><small>{angle}</small></th>\
+        <th scope=\"col\">Peak to peak</th></tr></thead>\n<tbody>\n"
+            .replace("{angle}", angle_unit),
+    );
+    let fixed = |x: Option<f64>, digits: usize| {
+        // No negative zero.
+        x.map_or("–".to_owned(), |x| {
+            let text = format!("{x:.digits$}");
+            if text.trim_start_matches('-').trim_matches(['0', '.']).is_empty() {
+                text.trim_start_matches('-').to_owned()
+            } else {
+                text.replace('-', "\u{2212}")
+            }
+        })
+    };
+    html.push_str(&head);
+    for (number, cycle) in cycles.iter().take(ROWS).enumerate() {
+        if number == UNFOLDED {
+            let more = cycles.len().min(ROWS) - UNFOLDED;
+            let rows = if more == 1 { "row" } else { "rows" };
+            let _ = write!(html, "</tbody></table></div>\n<details><summary>{more} more {rows}</summary>\n{head}");
+        }
+        let name = escaped(&cycle.body);
+        let row_head = if several { format!("<th scope=\"row\">{name}</th>") } else { String::new() };
+        let _ = writeln!(
+            html,
+            "<tr data-body=\"{name}\" data-t=\"{}\">{row_head}<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>\
+             <td>{}</td><td>{}</td></tr>",
+            cycle.t,
+            fixed(Some(cycle.t), of_times),
+            fixed(cycle.omega.map(|omega| omega[0]), of_rates),
+            fixed(cycle.omega.map(|omega| omega[1]), of_rates),
+            fixed(cycle.ratio(), 4),
+            fixed(cycle.housner, 4),
+            fixed(cycle.peak_after.map(|peak| peak * per_radian), of_peaks),
+            fixed(cycle.decay(), 4),
+        );
+    }
+    html.push_str("</tbody></table></div>\n");
+    html.push_str(if cycles.len() > UNFOLDED { "</details>\n" } else { "" });
+    if cycles.len() > ROWS {
+        let _ = writeln!(html, "<p>… and {} more; all are in summary.json.</p>", cycles.len() - ROWS);
+    }
+    html.push_str(
+        "<p class=\"note\">φ̇⁻ and φ̇⁺ are the angular velocities right before and right after the step in which the \
+         corner that comes down hits; a step of gravity is in them, too. Housner: 1 − (3/2) sin²α, for rigid ground without slip or bounce. A base that \
+         gives way spreads the loss over the half cycle: the ratio is then nearer to 1, and the decay from peak to peak \
+         tells what is lost.</p>\n</section>",
+    );
+    html
+}

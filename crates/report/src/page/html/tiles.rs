@@ -1,0 +1,153 @@
+//! The numbers of the summary: those that one wants to know first as tiles, all others as a table.
+
+use super::{scientific, with_code, with_prefix};
+use crate::page::{content, rounded};
+use crate::{Summary, shortest, with_digits};
+use serde_json::Value;
+use std::fmt::Write;
+use teeter_plot::escaped;
+
+/// The values of `summary.json` by path, such as `energy.largest_residual`.
+pub(super) struct Numbers(Value);
+
+/// What the clock measured, which differs from run to run.
+const CLOCKED: [&str; 2] = ["wall_seconds", "us_per_step"];
+
+impl Numbers {
+    pub(super) fn of(summary: &Summary) -> Self {
+        // A summary always serialises: its numbers are finite, or null.
+        Self(serde_json::to_value(summary).unwrap_or_default())
+    }
+
+    /// The text of a value as the file has it, a word without its quotes.
+    pub(super) fn text(&self, path: &str) -> String {
+        match path
+            .split('.')
+            .try_fold(&self.0, |value, key| value.get(key).or_else(|| value.get(key.parse::<usize>().ok()?)))
+        {
+            Some(Value::String(word)) => word.clone(),
+            Some(value) => value.to_string(),
+            None => String::new(),
+        }
+    }
+
+    /// The paths of all single values that no tile shows.
+    fn others(&self) -> Vec<String> {
+        fn walk(value: &Value, path: &str, out: &mut Vec<String>) {
+            match value {
+                Value::Object(map) => {
+                    for (key, value) in map {
+                        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+                        walk(value, &path, out);
+                    }
+                }
+                Value::Array(_) => {}
+                _ => out.push(path.to_owned()),
+            }
+        }
+        let mut paths = Vec::new();
+        walk(&self.0, "", &mut paths);
+        paths.retain(|path| {
+            !TILES.contains(&path.as_str()) && !CLOCKED.contains(&path.as_str()) && !path.starts_with("model.")
+        });
+        paths
+    }
+}
+
+/// What users want to know first: the numbers of the mechanics, then from [`NUMERIC`] on those of the computation.
+const TILES: [&str; 13] = [
+    "deflections.0.w",
+    "max_phi_over_alpha",
+    "overturned_at",
+    "rests_from",
+    "energy.lost",
+    "impact_count",
+    "horizon",
+    "reclosure_count",
+    "max_penetration",
+    "energy.largest_residual",
+    "contact.unconverged_steps",
+    "contact.max_residual",
+    "contact.max_iterations",
+];
+
+/// The first tile that is of the computation.
+const NUMERIC: usize = 7;
+
+/// Energy that is lost; what is rounding beside the scene's energy isn't shown as a loss.
+fn lost(energy: &crate::summary::EnergySummary) -> String {
+    let counts = content::holds(energy.lost.abs(), energy.scale);
+    with_prefix(if counts { energy.lost } else { 0.0 }, "J")
+}
+
+pub(super) fn tiles(values: &Numbers, summary: &Summary) -> String {
+    let mut html = String::new();
+    let seconds = |t: Option<f64>| t.map(|t| with_prefix(t, "s"));
+    // Without contacts their numbers would all be 0.
+    let touches = !summary.model.contacts.is_empty() || summary.contact.max_contacts > 0;
+    let of_contacts = ["impact_count", "reclosure_count", "max_penetration"];
+    for (number, path) in TILES.into_iter().enumerate() {
+        if !touches && (of_contacts.contains(&path) || path.starts_with("contact.")) {
+            continue;
+        }
+        let (label, shown) = match path {
+            "deflections.0.w" => ("Largest deflection", summary.deflections.first().map(|of| with_prefix(of.w, "m"))),
+            "max_phi_over_alpha" => ("Largest φ/α", summary.max_phi_over_alpha.map(share_of_critical_angle)),
+            "overturned_at" => ("First overturned at", seconds(summary.overturned_at)),
+            "rests_from" => ("All at rest from", seconds(summary.rests_from)),
+            "energy.lost" => ("Energy lost", Some(lost(&summary.energy))),
+            "impact_count" => ("Impacts", Some(summary.impact_count.to_string())),
+            "horizon" => ("Predictable up to", seconds(summary.horizon)),
+            "reclosure_count" => ("Contacts lost and found again", Some(summary.reclosure_count.to_string())),
+            "max_penetration" => ("Deepest penetration of a corner", Some(with_prefix(summary.max_penetration, "m"))),
+            "energy.largest_residual" => ("Energy residual", Some(scientific(summary.energy.largest_residual))),
+            "contact.unconverged_steps" => ("Steps not solved", Some(summary.contact.unconverged_steps.to_string())),
+            "contact.max_residual" => ("Contact residual", Some(scientific(summary.contact.max_residual))),
+            _ => ("Most iterations", Some(summary.contact.max_iterations.to_string())),
+        };
+        // What has no meaning for this scene, or wasn't measured.
+        let Some(shown) = shown else { continue };
+        let bad = path == "contact.unconverged_steps" && summary.contact.unconverged_steps > 0;
+        let _ = writeln!(
+            html,
+            "<div class=\"tile{}{}\"><dt>{label}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{shown}</dd></div>",
+            if number >= NUMERIC { " numeric" } else { "" },
+            if bad { " bad" } else { "" },
+            escaped(&values.text(path))
+        );
+    }
+    html
+}
+
+pub(super) fn numbers(values: &Numbers) -> String {
+    let mut html = String::new();
+    for path in values.others() {
+        let text = values.text(&path);
+        // For people; the file, and `data-value`, have all digits.
+        let shown = match (text.parse::<f64>(), unit_of(&path)) {
+            (Ok(x), Some(unit)) => with_digits(x, unit, 6).replace('-', "\u{2212}"),
+            (Ok(x), None) if text.contains(['.', 'e']) && path != "version" => shortest(x, 3).replace('-', "\u{2212}"),
+            _ => with_code(&text),
+        };
+        let text = escaped(&text);
+        let _ = writeln!(
+            html,
+            "<tr><th scope=\"row\">{path}</th><td data-summary=\"{path}\" data-value=\"{text}\">{shown}</td></tr>"
+        );
+    }
+    html
+}
+
+/// The unit of a number of the summary, of those that have one.
+fn unit_of(path: &str) -> Option<&'static str> {
+    match path {
+        "dt" | "t" => Some("s"),
+        "energy.largest_residual" | "energy.positive_contact_work.steps" => None,
+        _ => path.starts_with("energy.").then_some("J"),
+    }
+}
+
+/// φ/α for people: what is below a thousandth is rounding or hardly seen.
+fn share_of_critical_angle(share: f64) -> String {
+    if share < 1e-3 { "< 0.001".to_owned() } else { rounded(share, 3).to_string() }
+}
