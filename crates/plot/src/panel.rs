@@ -34,6 +34,7 @@ pub struct Panel {
     ticks_at: Vec<(f64, f64)>,
     guides: Vec<f64>,
     shaded: Option<(f64, String)>,
+    blank: Option<String>,
     labels: Vec<(f64, f64, String)>,
     height: Option<f64>,
 }
@@ -68,6 +69,7 @@ impl Panel {
             ticks_at: Vec::new(),
             guides: Vec::new(),
             shaded: None,
+            blank: None,
             labels: Vec::new(),
             height: None,
         }
@@ -139,6 +141,13 @@ impl Panel {
         self
     }
 
+    /// Says in the legend what it means where a map has no cells.
+    #[must_use]
+    pub fn blank_means(mut self, label: impl Into<String>) -> Self {
+        self.blank = Some(label.into());
+        self
+    }
+
     /// Sets the frame's height, mm. Default: 52.5 mm for a single panel, 35 mm for one of several.
     /// No effect on bands.
     #[must_use]
@@ -175,7 +184,9 @@ impl Panel {
                 let named = series.iter().enumerate().filter_map(|(k, series)| Entry::of(series, series.number_at(k)));
                 let shaded = self.shaded.iter().filter(|(_, name)| !name.is_empty());
                 let shaded = shaded.map(|(_, name)| Entry { symbol: Symbol::Swatch(Colour::Shade), name });
-                named.chain(shaded).collect()
+                let blank = self.blank.iter().filter(|name| !name.is_empty());
+                let blank = blank.map(|name| Entry { symbol: Symbol::Swatch(Colour::Paper), name });
+                named.chain(shaded).chain(blank).collect()
             }
             Content::Bands { key, .. } => {
                 key.iter().map(|(colour, name)| Entry { symbol: Symbol::Swatch(*colour), name }).collect()
@@ -226,6 +237,7 @@ impl Panel {
             let path = cells_path(cells.points(), |x| frame.px(x), py);
             let _ = writeln!(svg, "<path d=\"{path}\" fill=\"{colour}\" stroke=\"none\"/>");
         }
+        Self::draw_marks(svg, frame, theme, y, series, true);
         for (k, line) in series.iter().enumerate().filter(|(_, series)| series.drawn == Drawn::Line) {
             let path = line_path(line.points(), |x| frame.px(x), py);
             let stroke = stroke(line.number_at(k), line.dash, theme);
@@ -233,14 +245,7 @@ impl Panel {
             let _ = writeln!(svg, "<path d=\"{path}\" {stroke} {weight}/>");
         }
         svg.push_str("</g>\n");
-        for (k, marks) in series.iter().enumerate() {
-            let Drawn::Marks { mark, hollow } = marks.drawn else { continue };
-            let shown = marks.points().iter().filter(|point| frame.x.contains(point.0) && y.contains(point.1));
-            let path: String = shown.map(|&(x, y)| mark_path(mark, frame.px(x), py(y))).collect();
-            if !path.is_empty() {
-                let _ = writeln!(svg, "<path d=\"{path}\" {}/>", mark_style(marks.number_at(k), hollow, theme));
-            }
-        }
+        Self::draw_marks(svg, frame, theme, y, series, false);
         self.draw_labels(svg, frame, theme, y);
         let ticks = self.ticks_at.iter().filter(|(x, _)| frame.x.contains(*x));
         let ticks: String = ticks
@@ -264,6 +269,20 @@ impl Panel {
 }
 
 impl Panel {
+    /// The marks that are faint, or those that aren't.
+    fn draw_marks(svg: &mut String, frame: &Frame, theme: Theme, y: &Axis, series: &[Series], faint: bool) {
+        for (k, marks) in series.iter().enumerate().filter(|(_, marks)| marks.faint == faint) {
+            let Drawn::Marks { mark, hollow } = marks.drawn else { continue };
+            let shown = marks.points().iter().filter(|point| frame.x.contains(point.0) && y.contains(point.1));
+            let py = |value: f64| frame.top + y.below_high(value, frame.height);
+            let path: String = shown.map(|&(x, y)| mark_path(mark, frame.px(x), py(y))).collect();
+            if !path.is_empty() {
+                let style = mark_style(marks.number_at(k), hollow, faint, theme);
+                let _ = writeln!(svg, "<path d=\"{path}\" {style}/>");
+            }
+        }
+    }
+
     fn draw_labels(&self, svg: &mut String, frame: &Frame, theme: Theme, y: &Axis) {
         let ink = Colour::Ink.value(theme);
         let mut above = f64::NEG_INFINITY;

@@ -169,10 +169,19 @@ pub(super) fn figure(study: &Ensemble, asked: &Overturning) -> Result<StudyFigur
     }
     let mut notes = vec![format!("{events} of {cases} cases: {}.", asked.event.words())];
     if study.table.incomplete() > 0 {
-        notes.push(format!("{} cases without a result are left blank, too.", study.table.incomplete()));
+        notes.push(format!("{} cases without a result are left blank.", study.table.incomplete()));
     }
-    let title = format!("Where the event `{}` comes", asked.event.words());
-    let panel = Panel::new(y).with(series).height_mm(80.0);
+    let title = format!("Where {}", asked.event.clause());
+    let blank = match study.table.incomplete() {
+        0 if events == cases => String::new(),
+        0 => asked.event.opposite(),
+        _ if events == cases => "no result".to_owned(),
+        _ => format!("{}, or no result", asked.event.opposite()),
+    };
+    if cases > events {
+        rows.push(vec![asked.event.opposite(), (cases - events).to_string()]);
+    }
+    let panel = Panel::new(y).with(series).blank_means(blank).height_mm(80.0);
     Ok(StudyFigure {
         name: "overturning",
         figure: Figure::new("overturning", title.clone(), x).legend(Legend::Rows).panel(panel),
