@@ -59,6 +59,8 @@ pub(crate) enum Symbol {
     Marks { mark: Mark, hollow: bool, faint: bool, number: usize },
     Swatch(Colour),
     Area(usize),
+    /// A dashed line across the panel.
+    Guide,
 }
 
 impl<'a> Entry<'a> {
@@ -90,6 +92,12 @@ impl<'a> Entry<'a> {
                 "<rect x=\"{x:.2}\" y=\"{:.2}\" width=\"14\" height=\"8\" {}/>",
                 y - 8.0,
                 area_style(number, theme)
+            ),
+            Symbol::Guide => write!(
+                svg,
+                "<path d=\"M{x:.2} {:.2}h14\" stroke=\"{}\" stroke-dasharray=\"4 3\" stroke-width=\".8\"/>",
+                y - 3.5,
+                Colour::Guide.value(theme)
             ),
             Symbol::Swatch(colour) => write!(
                 svg,

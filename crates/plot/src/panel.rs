@@ -33,6 +33,8 @@ pub struct Panel {
     /// Places of ticks, and their length as a part of the longest.
     ticks_at: Vec<(f64, f64)>,
     guides: Vec<f64>,
+    levels: Vec<f64>,
+    guide_name: Option<String>,
     shaded: Option<(f64, String)>,
     blank: Option<String>,
     labels: Vec<(f64, f64, String)>,
@@ -68,6 +70,8 @@ impl Panel {
             note: None,
             ticks_at: Vec::new(),
             guides: Vec::new(),
+            levels: Vec::new(),
+            guide_name: None,
             shaded: None,
             blank: None,
             labels: Vec::new(),
@@ -124,6 +128,20 @@ impl Panel {
     #[must_use]
     pub fn guides(mut self, x: Vec<f64>) -> Self {
         self.guides = x;
+        self
+    }
+
+    /// Draws dashed horizontal lines at these y.
+    #[must_use]
+    pub fn levels(mut self, y: Vec<f64>) -> Self {
+        self.levels = y;
+        self
+    }
+
+    /// Names the dashed lines in the legend. Default: no name.
+    #[must_use]
+    pub fn guides_named(mut self, name: impl Into<String>) -> Self {
+        self.guide_name = Some(name.into());
         self
     }
 
@@ -186,7 +204,8 @@ impl Panel {
                 let shaded = shaded.map(|(_, name)| Entry { symbol: Symbol::Swatch(Colour::Shade), name });
                 let blank = self.blank.iter().filter(|name| !name.is_empty());
                 let blank = blank.map(|name| Entry { symbol: Symbol::Swatch(Colour::Paper), name });
-                named.chain(shaded).chain(blank).collect()
+                let guides = self.guide_name.iter().map(|name| Entry { symbol: Symbol::Guide, name });
+                named.chain(guides).chain(shaded).chain(blank).collect()
             }
             Content::Bands { key, .. } => {
                 key.iter().map(|(colour, name)| Entry { symbol: Symbol::Swatch(*colour), name }).collect()
@@ -225,6 +244,14 @@ impl Panel {
                 svg,
                 "<path d=\"M{:.2} {top:.2}v{height}\" stroke=\"{}\" stroke-dasharray=\"4 3\" stroke-width=\".8\"/>",
                 frame.px(x),
+                Colour::Guide.value(theme)
+            );
+        }
+        for &level in self.levels.iter().filter(|level| y.contains(**level)) {
+            let _ = writeln!(
+                svg,
+                "<path d=\"M{LEFT} {:.2}h{width}\" stroke=\"{}\" stroke-dasharray=\"4 3\" stroke-width=\".8\"/>",
+                py(level),
                 Colour::Guide.value(theme)
             );
         }

@@ -342,7 +342,9 @@
   }
 
   function relayout() {
+    const wasNear = near !== null && !scene.isWhole();
     scene.layout();
+    if (wasNear) scene.closeUp();
     plots.redraw();
     show(frame);
   }
@@ -359,9 +361,13 @@
     if (wanted.has("t") && Number.isFinite(Number(wanted.get("t")))) seek(Number(wanted.get("t")));
   }
 
+  /** The body that the picture opens on, if it doesn't open on all. */
+  let near = null;
   relayout();
   scene.forces(how.value);
   exaggerate(scene.suitable(factors));
+  near = scene.closeUp();
+  if (near !== null) byId("scene-keys").prepend(`Opened close to ${near}; “Show all” shows all ${scenery.blocks.length} bodies. `);
   fromAddress();
   window.addEventListener("hashchange", fromAddress);
   let lastWidth = document.documentElement.clientWidth;

@@ -149,7 +149,7 @@ fn warnings(summary: &Summary) -> String {
             html,
             "<li data-warning=\"{}\"><span>{}</span>{count}</li>",
             escaped(&warning.code),
-            with_code(&warning.text)
+            with_code(warning.text.strip_prefix("warning: ").unwrap_or(&warning.text))
         );
     }
     html.push_str("</ul>\n</section>");

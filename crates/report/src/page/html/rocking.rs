@@ -86,7 +86,14 @@ pub(super) fn rocking(cycles: &[HalfCycle], recorder: &PageRecorder, dt: f64) ->
         "<p class=\"note\">φ̇⁻ and φ̇⁺ are the angular velocities right before and right after the step in which the \
          corner that comes down hits; a step of gravity is in them, too. Housner: 1 − (3/2) sin²α, for rigid ground without slip or bounce. A base that \
          gives way spreads the loss over the half cycle: the ratio is then nearer to 1, and the decay from peak to peak \
-         tells what is lost.</p>\n</section>",
+         tells what is lost.",
     );
+    html.push_str(if scenery.incline != 0.0 {
+        " Here φ is measured from the incline, in the plots from the horizontal; the swings to the two sides differ, as gravity isn’t \
+         normal to the incline."
+    } else {
+        ""
+    });
+    html.push_str("</p>\n</section>");
     html
 }
