@@ -55,8 +55,16 @@ pub(crate) struct Entry<'a> {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Symbol {
-    Line { number: usize, dash: Dash },
-    Marks { mark: Mark, hollow: bool, faint: bool, number: usize },
+    Line {
+        number: usize,
+        dash: Dash,
+    },
+    Marks {
+        mark: Mark,
+        hollow: bool,
+        faint: bool,
+        number: usize,
+    },
     Swatch(Colour),
     Area(usize),
     /// A dashed line across the panel.

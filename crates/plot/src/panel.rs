@@ -439,6 +439,7 @@ fn line_path(points: &[(f64, f64)], px: impl Fn(f64) -> f64, py: impl Fn(f64) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Figure, Mark};
 
     #[test]
     fn labelled_points_are_ringed_and_their_text_stays_in_the_frame() {
@@ -465,5 +466,29 @@ mod tests {
     fn a_line_breaks_where_it_is_not_finite() {
         let points = [(0.0, 0.0), (1.0, 1.0), (2.0, f64::NAN), (3.0, 2.0)];
         assert_eq!(line_path(&points, |x| x, |y| y), "M0.00 0.00L1.00 1.00M3.00 2.00");
+    }
+
+    #[test]
+    fn what_needs_a_name_has_one_and_faint_marks_are_below_the_lines() {
+        let axis = || Axis::between("y", 0.0, 10.0);
+        let cells = Series::cells("yes", [((0.0, 1.0), (0.0, 1.0))]);
+        let named = Panel::new(axis()).with([cells]).blank_means("no").levels(vec![5.0, 50.0]).guides_named("limit");
+        let svg = Figure::new("f", "t", Axis::between("x", 0.0, 10.0)).panel(named).to_svg();
+        for name in [">yes<", ">no<", ">limit<"] {
+            assert!(svg.contains(name), "{name}: {svg}");
+        }
+        // In the legend and at 5, not at 50.
+        assert_eq!(svg.matches("stroke-dasharray=\"4 3\"").count(), 2, "{svg}");
+        let points = [(1.0, 1.0), (2.0, 2.0)];
+        let draw = |marks: Series| {
+            let panel = Panel::new(axis()).with([marks.number(0), Series::line("", points).number(1)]);
+            Figure::new("f", "t", Axis::between("x", 0.0, 10.0)).panel(panel).to_svg()
+        };
+        let marks = || Series::marks("", points, Mark::Circle).hollow();
+        let order = |svg: &str| {
+            let [mark, line] = ["#0050b0", "#e05206"].map(|colour| svg.find(&format!("stroke=\"{colour}")).unwrap());
+            mark < line
+        };
+        assert!(order(&draw(marks().faint())) && !order(&draw(marks())));
     }
 }

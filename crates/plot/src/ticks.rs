@@ -125,7 +125,7 @@ impl Reading {
             (false, true) => format!(" ({power})"),
             (false, false) => format!(" ({power} {})", escaped(unit)),
         };
-        format!("{}{offset}{unit}", with_subscripts(name))
+        with_subscripts(name, &format!("{offset}{unit}"))
     }
 }
 

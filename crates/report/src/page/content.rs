@@ -55,7 +55,8 @@ const NAMED: usize = 3;
 
 impl LeftOut {
     fn told(&self) -> String {
-        let size = if self.largest == 0.0 { "0".to_owned() } else { format!("{} {}", power_of_ten(self.largest), self.unit) };
+        let size =
+            if self.largest == 0.0 { "0".to_owned() } else { format!("{} {}", power_of_ten(self.largest), self.unit) };
         let of = match self.of.len() {
             // The name of the quantity alone: `force`, not `force of`.
             0 => return format!("{} ({size})", self.what.trim_end_matches(" of")),
@@ -73,7 +74,11 @@ pub(crate) fn told(left_out: &[LeftOut]) -> String {
         return String::new();
     }
     let list: Vec<String> = left_out.iter().map(LeftOut::told).collect();
-    format!("Not drawn, as it stays below {} of its scale, which is rounding: {}.", power_of_ten(ROUNDING), list.join("; "))
+    format!(
+        "Not drawn, as it stays below {} of its scale, which is rounding: {}.",
+        power_of_ten(ROUNDING),
+        list.join("; ")
+    )
 }
 
 /// A number with one digit as a power of ten: `3 × 10⁻¹²`.
@@ -123,6 +128,9 @@ mod tests {
         let text = told(&[left_out("φ of", 1, 3e-12), left_out("slip of", 0, 0.0)]);
         assert!(text.ends_with("rounding: φ of b0 (3 × 10⁻¹² rad); slip (0)."), "{text}");
         let text = told(&[left_out("φ of", 2, 3e-12), left_out("x of", 15, 4e-12)]);
-        assert!(text.ends_with("φ of b0, b1 (at most 3 × 10⁻¹² rad); x of 15 blocks (at most 4 × 10⁻¹² rad)."), "{text}");
+        assert!(
+            text.ends_with("φ of b0, b1 (at most 3 × 10⁻¹² rad); x of 15 blocks (at most 4 × 10⁻¹² rad)."),
+            "{text}"
+        );
     }
 }

@@ -63,7 +63,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("residual", scientific(summary.energy.largest_residual)),
         ("notdrawn", not_drawn(&panels)),
         ("shapes", beams::shapes(recorder)),
-        ("records", accelerograms::section(&recorder.scenery.records, &summary.records)),
+        ("records", accelerograms::section(&recorder.scenery.records, &summary.records, true)),
         ("borne", beams::borne(recorder, summary)),
         ("thrust", thrust::section(recorder)),
         ("rocking", rocking::rocking(&half_cycles(recorder, summary), recorder, summary.dt)),

@@ -190,7 +190,8 @@ fn where_a_curve_shows_extremes_the_values_at_the_pictures_are_those_of_the_traj
     let of = |name: &str| &trajectory.iter().find(|(column, _)| column == name).unwrap().1;
     let (times, w) = (of("t"), of("t.w_mid"));
     let mut picture = 0;
-    let range = others.iter().fold(0.0, |most: f64, w| most.max(*w)) - others.iter().fold(0.0, |least: f64, w| least.min(*w));
+    let range =
+        others.iter().fold(0.0, |most: f64, w| most.max(*w)) - others.iter().fold(0.0, |least: f64, w| least.min(*w));
     for (after, shown) in at.into_iter().zip(others) {
         picture += after;
         let row = times.iter().position(|row| (row - t[picture]).abs() < 1e-9).unwrap();

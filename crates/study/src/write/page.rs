@@ -93,7 +93,7 @@ impl Page<'_> {
             let time = row.measured().or(row.modelled()).map_or_else(String::new, duration);
             let kind = if row.measured().is_some() { "of CPU time" } else { "by counted work" };
             let accuracy = row.accuracy().map_or_else(String::new, |error| format!("{} off, ", percent(error)));
-            let warned = if row.warned().is_empty() { "" } else { ", warned of" };
+            let warned = if row.warned().is_empty() { "" } else { ", with warnings" };
             let _ = writeln!(html, "<li>{accuracy}{time} {kind}{warned}: <code>{}</code></li>", self.command(row));
         }
         html.push_str("</ol></section>\n");

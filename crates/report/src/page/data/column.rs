@@ -109,7 +109,8 @@ mod tests {
     fn a_curve_is_read_back_to_the_step_in_which_it_is_seen() {
         let smooth = |k: u32| 1234.5 + 1e-3 * (f64::from(k) / 40.0).sin();
         let noisy = |k: u32| f64::from(k.wrapping_mul(2_654_435_761) % 1000) - 500.0;
-        for (values, range) in [((0..500).map(smooth).collect::<Vec<_>>(), 2e-3), ((0..500).map(noisy).collect(), 1e3)] {
+        for (values, range) in [((0..500).map(smooth).collect::<Vec<_>>(), 2e-3), ((0..500).map(noisy).collect(), 1e3)]
+        {
             let found = read(&Column::of(&values, SEEN));
             assert_eq!(found.len(), values.len());
             assert!(found.iter().zip(&values).all(|(a, b)| (a - b).abs() <= 0.51 * range / SEEN));

@@ -2,9 +2,9 @@
 
 use super::column::{Column, SEEN, SEEN_BELOW_PEAKS};
 use super::{digits, time};
+use crate::page::means;
 use crate::page::panels::{Line, Panels, Place};
 use crate::page::recorder::PageRecorder;
-use crate::page::means;
 use crate::with_digits;
 use serde::Serialize;
 use teeter_integrator::ContactState;

@@ -117,16 +117,7 @@ pub fn page(comparison: &Comparison, title: &str, names: [&str; 3]) -> Result<St
     html.push_str(horizon_note(comparison));
     html.push_str("</section>\n<section class=\"panel\"><h3>Differences</h3>\n");
     html.push_str(&html_table(
-        &[
-            "Quantity",
-            "Root mean square",
-            "share",
-            "Largest difference",
-            "share",
-            "at",
-            "Mean",
-            "Noise of the samples",
-        ],
+        &["Quantity", "Root mean square", "share", "Largest difference", "share", "at", "Mean", "Noise of the samples"],
         comparison.channels.iter().map(quantity_row),
     ));
     html.push_str(
@@ -146,7 +137,8 @@ pub fn page(comparison: &Comparison, title: &str, names: [&str; 3]) -> Result<St
 
 /// The page in a sentence: how far the angle is off, or else the first quantity, and whether the impacts are the same.
 fn headline(comparison: &Comparison) -> String {
-    let Some(found) = comparison.channels.iter().find(|found| found.channel == Channel::Phi).or(comparison.channels.first())
+    let Some(found) =
+        comparison.channels.iter().find(|found| found.channel == Channel::Phi).or(comparison.channels.first())
     else {
         return String::new();
     };
