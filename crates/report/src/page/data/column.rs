@@ -55,7 +55,10 @@ impl Column {
         // Beyond this whole numbers have no place in a double.
         let fits = |x: &f64| !x.is_finite() || (x / unit).abs() < 1e15;
         if values.len() < FEW || !values.iter().all(fits) {
-            return Self::Plain(values.iter().map(|x| rounded(*x, super::DIGITS)).collect());
+            // With so many digits that the unit is among them, however far from zero the values are.
+            let (low, high) = ends(values);
+            let digits = (low.abs().max(high.abs()) / unit).log10().ceil().clamp(0.0, 16.0) as usize + 1;
+            return Self::Plain(values.iter().map(|x| rounded(*x, digits.max(super::DIGITS))).collect());
         }
         let [first, second] = [false, true].map(|second| packed(values, unit, second));
         let (order, packed) = if second.len() < first.len() { (2, second) } else { (1, first) };
@@ -138,6 +141,8 @@ mod tests {
         let mut far = vec![0.0; 20];
         far[3] = 1e300;
         assert!(matches!(Column::of_pose(&far), Column::Plain(_)));
-        assert!(matches!(Column::of(&[1.0, 2.0], SEEN), Column::Plain(_)));
+        // A few values far from zero keep their course.
+        let Column::Plain(few) = Column::of(&[1234.5, 1234.500_03], SEEN) else { panic!("packed") };
+        assert!((few[1] - few[0] - 3e-5).abs() < 1e-9, "{few:?}");
     }
 }
