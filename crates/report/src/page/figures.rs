@@ -193,7 +193,7 @@ impl Plots<'_> {
     fn crowd_omega(&self) -> Figure {
         let bands: Vec<Vec<f64>> = (BAND_COLUMNS..2 * BAND_COLUMNS).map(|k| self.panels.curves.curve(k)).collect();
         let lines = Self::bands(&self.t, &bands, 1.0);
-        self.crowd_figure("omega", "Angular velocity of the bodies over time", "Angular velocity φ̇ (rad/s)", lines)
+        self.crowd_figure("omega", "Angular velocity of the bodies over time", "Angular velocity ω (rad/s)", lines)
     }
 
     /// Of one pair or two a figure of all; of more one of each, as all together wouldn't fit a page: of [`MOST_PAIRS`]

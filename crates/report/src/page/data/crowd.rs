@@ -14,7 +14,7 @@ const BANDS_SEEN: f64 = 1e4;
 #[derive(Serialize)]
 pub(super) struct CrowdData {
     names: [&'static str; BAND_COLUMNS],
-    /// Of φ and φ̇, at the times of the curves.
+    /// Of φ and ω, at the times of the curves.
     phi: Vec<Column>,
     omega: Vec<Column>,
     /// At the times of the pictures, with the bodies that turned and moved furthest.
