@@ -139,8 +139,10 @@ export async function unplotted(page, trajectory) {
     const [what, place] = name.split(".").pop().split("@");
     if (!(what in titles) || place === undefined) continue;
     const most = largest(trajectory, (row) => row[name]);
-    // Rounding isn't drawn.
-    if (!(most > 1e-9)) continue;
+    // Rounding isn't drawn: also that of the largest of its kind, as of the moment at a free end.
+    const kind = Object.keys(trajectory[0]).filter((other) => other.split(".").pop().split("@")[0] === what);
+    const greatest = Math.max(...kind.map((other) => largest(trajectory, (row) => row[other])));
+    if (!(most > Math.max(1e-9, 1e-8 * greatest))) continue;
     // One curve, the same at all times; how its points are thinned may move it by little.
     const fits = (value, unit, t) => {
       const wanted = valueAt(trajectory, name, t);

@@ -3,6 +3,7 @@
 // The rule and its scales are those of docs/report.md; they are worked out here anew, from the outlines of the bodies, the spans and
 // the tables of the run, so that a mistake in the program's own rule is seen.
 
+import { signed, wholeNumbers } from "./columns.mjs";
 import { inSi } from "./motion.mjs";
 
 /** The part of its scale below which a quantity is rounding. */
@@ -24,19 +25,9 @@ const si = (unit) => angleUnits[unit] ?? lengthUnits[unit] ?? inSi(unit);
 /** The unit in brackets at the end of the name of an axis. */
 const unitOf = (label) => label.match(/\(([^()]*)\)$/)?.[1] ?? "";
 
-/** Deflections of a beam in its pictures, in units of its own: whole numbers of seven bits a byte with the lowest first, in base64. */
+/** Deflections of a beam in its pictures, in units of its own: second differences along the span; each picture begins anew. */
 function deflections(text, points) {
-  const numbers = [];
-  let [number, place] = [0n, 0n];
-  for (const byte of Buffer.from(text, "base64")) {
-    number |= BigInt(byte & 127) << place;
-    place += 7n;
-    if (byte & 128) continue;
-    numbers.push(Number(number & 1n ? -(number + 1n) / 2n : number / 2n));
-    [number, place] = [0n, 0n];
-  }
-  // Second differences along the span; each picture begins anew.
-  return numbers.reduce((w, difference, i) => {
+  return wholeNumbers(text).map(signed).reduce((w, difference, i) => {
     const [one, two] = [1, 2].map((back) => (i % points < back ? 0 : w[i - back]));
     w.push(difference + 2 * one - two);
     return w;

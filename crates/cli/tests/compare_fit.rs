@@ -112,6 +112,16 @@ fn a_run_seen_from_behind_at_another_time_is_recognised() {
     assert_eq!(rows.lines().count(), 1 + sampled.len());
     assert!(rows.starts_with("t,t_measured,phi_measured,phi_simulated,omega_measured,omega_simulated,compared\n"));
     let page = std::fs::read_to_string(folder.join("all/compare.html")).unwrap();
+    // It begins with what was found, and has no marks of the terminal.
+    let headline = page.split("<p class=\"headline\">").nth(1).unwrap().split("</p>").next().unwrap();
+    assert!(headline.starts_with("Angle φ: root mean square difference 0.0"), "{headline}");
+    assert!(headline.ends_with("; 3 impacts measured, 3 simulated"), "{headline}");
+    assert!(!page.contains('`'), "{page}");
+    // A ratio above 1 is never left without a word.
+    let impacts = found["impacts"].as_array().unwrap().iter();
+    let ratios = impacts.flat_map(|pair| ["measured", "simulated"].map(|name| pair[name]["omega_ratio"].as_f64()));
+    let above = ratios.flatten().any(|ratio| ratio > 1.0);
+    assert_eq!(page.contains("A ratio above 1 is no gain of energy"), above, "{found}");
     assert!(page.contains("<svg") && page.contains("Half-cycles") && !page.contains("http://www.w3.org/1999"));
     assert!(folder.join("all/figures/omega.svg").exists());
     let again = teeter(&folder, &arguments);
@@ -268,6 +278,21 @@ fn restitution_and_damping_come_back_within_two_percent() {
     // frames: the estimate is too large, and what is left below one. A misfit would leave far more.
     let left = found["mean_square_over_noise"].as_f64().unwrap();
     assert!((0.3..1.5).contains(&left), "what is left is noise: {left}");
+    // On the page each number has its unit, angles that of the figures; what isn't a key isn't set as one.
+    let page = std::fs::read_to_string(folder.join("fitted/fit.html")).unwrap();
+    let row = |name: &str| {
+        let row = page.split(&format!("<tr><td>{name}</td>")).nth(1).unwrap_or_else(|| panic!("{name}: {page}"));
+        row.split("</tr>").next().unwrap().to_owned()
+    };
+    assert_eq!(row("zero of the angle").matches("°<").count(), 3, "{page}");
+    assert_eq!(row("time shift").matches("\u{a0}s<").count(), 3, "{page}");
+    row("<code>contact.feet.restitution</code>");
+    // The scene's own motion is dashed, the fitted one isn't, and what was measured is pale.
+    let figure = std::fs::read_to_string(folder.join("fitted/figures/phi.svg")).unwrap();
+    assert!(figure.contains("stroke=\"#0050b0\" stroke-dasharray=\"5 2.5\""), "{figure}");
+    assert!(
+        figure.contains("stroke=\"#e05206\" stroke-dasharray=\"none\"") && figure.contains("stroke-opacity=\".5\"")
+    );
     // The fitted scene runs, and moves as fitted.
     done(&folder, &["run", "fitted/scene.toml", "--out", "again", "--quiet"]);
     done(&folder, &["compare", "again", "camera.csv", "--out", "compared", "--quiet", "--offset", "0.3 deg"]);

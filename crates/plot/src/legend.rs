@@ -55,10 +55,20 @@ pub(crate) struct Entry<'a> {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Symbol {
-    Line { number: usize, dash: Dash },
-    Marks { mark: Mark, hollow: bool, number: usize },
+    Line {
+        number: usize,
+        dash: Dash,
+    },
+    Marks {
+        mark: Mark,
+        hollow: bool,
+        faint: bool,
+        number: usize,
+    },
     Swatch(Colour),
     Area(usize),
+    /// A dashed line across the panel.
+    Guide,
 }
 
 impl<'a> Entry<'a> {
@@ -66,7 +76,7 @@ impl<'a> Entry<'a> {
     pub(crate) fn of(series: &'a Series, number: usize) -> Option<Self> {
         let symbol = match series.drawn {
             Drawn::Line => Symbol::Line { number, dash: series.dash },
-            Drawn::Marks { mark, hollow } => Symbol::Marks { mark, hollow, number },
+            Drawn::Marks { mark, hollow } => Symbol::Marks { mark, hollow, faint: series.faint, number },
             Drawn::Area => Symbol::Area(number),
             Drawn::Cells => Symbol::Swatch(Colour::Series(number)),
         };
@@ -81,15 +91,21 @@ impl<'a> Entry<'a> {
                 y - 3.5,
                 stroke(number, dash, theme)
             ),
-            Symbol::Marks { mark, hollow, number } => {
+            Symbol::Marks { mark, hollow, faint, number } => {
                 let place = mark_path(mark, x + 7.0, y - 3.5);
-                write!(svg, "<path d=\"{place}\" {}/>", mark_style(number, hollow, theme))
+                write!(svg, "<path d=\"{place}\" {}/>", mark_style(number, hollow, faint, theme))
             }
             Symbol::Area(number) => write!(
                 svg,
                 "<rect x=\"{x:.2}\" y=\"{:.2}\" width=\"14\" height=\"8\" {}/>",
                 y - 8.0,
                 area_style(number, theme)
+            ),
+            Symbol::Guide => write!(
+                svg,
+                "<path d=\"M{x:.2} {:.2}h14\" stroke=\"{}\" stroke-dasharray=\"4 3\" stroke-width=\".8\"/>",
+                y - 3.5,
+                Colour::Guide.value(theme)
             ),
             Symbol::Swatch(colour) => write!(
                 svg,
@@ -187,11 +203,12 @@ pub(crate) fn area_style(number: usize, theme: Theme) -> String {
 }
 
 /// Colours of marks: hollow ones are open, filled ones have a thin edge in the background colour,
-/// so that overlapping marks remain visible.
-pub(crate) fn mark_style(number: usize, hollow: bool, theme: Theme) -> String {
+/// so that overlapping marks remain visible; faint ones are pale.
+pub(crate) fn mark_style(number: usize, hollow: bool, faint: bool, theme: Theme) -> String {
     let colour = Colour::Series(number).value(theme);
+    let pale = if faint { " stroke-opacity=\".5\" stroke-width=\".8\"" } else { "" };
     if hollow {
-        format!("fill=\"none\" stroke=\"{colour}\"")
+        format!("fill=\"none\" stroke=\"{colour}\"{pale}")
     } else {
         format!("fill=\"{colour}\" stroke=\"{}\" stroke-width=\".4\"", Colour::Paper.value(theme))
     }

@@ -33,7 +33,10 @@ pub struct Panel {
     /// Places of ticks, and their length as a part of the longest.
     ticks_at: Vec<(f64, f64)>,
     guides: Vec<f64>,
+    levels: Vec<f64>,
+    guide_name: Option<String>,
     shaded: Option<(f64, String)>,
+    blank: Option<String>,
     labels: Vec<(f64, f64, String)>,
     height: Option<f64>,
 }
@@ -67,7 +70,10 @@ impl Panel {
             note: None,
             ticks_at: Vec::new(),
             guides: Vec::new(),
+            levels: Vec::new(),
+            guide_name: None,
             shaded: None,
+            blank: None,
             labels: Vec::new(),
             height: None,
         }
@@ -125,6 +131,20 @@ impl Panel {
         self
     }
 
+    /// Draws dashed horizontal lines at these y.
+    #[must_use]
+    pub fn levels(mut self, y: Vec<f64>) -> Self {
+        self.levels = y;
+        self
+    }
+
+    /// Names the dashed lines in the legend. Default: no name.
+    #[must_use]
+    pub fn guides_named(mut self, name: impl Into<String>) -> Self {
+        self.guide_name = Some(name.into());
+        self
+    }
+
     /// Rings points and writes a text beside each: x, y, text.
     #[must_use]
     pub fn labels(mut self, labels: impl IntoIterator<Item = (f64, f64, String)>) -> Self {
@@ -136,6 +156,13 @@ impl Panel {
     #[must_use]
     pub fn shaded_below(mut self, y: f64, label: impl Into<String>) -> Self {
         self.shaded = Some((y, label.into()));
+        self
+    }
+
+    /// Says in the legend what it means where a map has no cells.
+    #[must_use]
+    pub fn blank_means(mut self, label: impl Into<String>) -> Self {
+        self.blank = Some(label.into());
         self
     }
 
@@ -175,7 +202,10 @@ impl Panel {
                 let named = series.iter().enumerate().filter_map(|(k, series)| Entry::of(series, series.number_at(k)));
                 let shaded = self.shaded.iter().filter(|(_, name)| !name.is_empty());
                 let shaded = shaded.map(|(_, name)| Entry { symbol: Symbol::Swatch(Colour::Shade), name });
-                named.chain(shaded).collect()
+                let blank = self.blank.iter().filter(|name| !name.is_empty());
+                let blank = blank.map(|name| Entry { symbol: Symbol::Swatch(Colour::Paper), name });
+                let guides = self.guide_name.iter().map(|name| Entry { symbol: Symbol::Guide, name });
+                named.chain(guides).chain(shaded).chain(blank).collect()
             }
             Content::Bands { key, .. } => {
                 key.iter().map(|(colour, name)| Entry { symbol: Symbol::Swatch(*colour), name }).collect()
@@ -217,6 +247,14 @@ impl Panel {
                 Colour::Guide.value(theme)
             );
         }
+        for &level in self.levels.iter().filter(|level| y.contains(**level)) {
+            let _ = writeln!(
+                svg,
+                "<path d=\"M{LEFT} {:.2}h{width}\" stroke=\"{}\" stroke-dasharray=\"4 3\" stroke-width=\".8\"/>",
+                py(level),
+                Colour::Guide.value(theme)
+            );
+        }
         for (k, area) in series.iter().enumerate().filter(|(_, series)| series.drawn == Drawn::Area) {
             let path = line_path(area.points(), |x| frame.px(x), py);
             let _ = writeln!(svg, "<path d=\"{path}\" {}/>", area_style(area.number_at(k), theme));
@@ -226,6 +264,7 @@ impl Panel {
             let path = cells_path(cells.points(), |x| frame.px(x), py);
             let _ = writeln!(svg, "<path d=\"{path}\" fill=\"{colour}\" stroke=\"none\"/>");
         }
+        Self::draw_marks(svg, frame, theme, y, series, true);
         for (k, line) in series.iter().enumerate().filter(|(_, series)| series.drawn == Drawn::Line) {
             let path = line_path(line.points(), |x| frame.px(x), py);
             let stroke = stroke(line.number_at(k), line.dash, theme);
@@ -233,14 +272,7 @@ impl Panel {
             let _ = writeln!(svg, "<path d=\"{path}\" {stroke} {weight}/>");
         }
         svg.push_str("</g>\n");
-        for (k, marks) in series.iter().enumerate() {
-            let Drawn::Marks { mark, hollow } = marks.drawn else { continue };
-            let shown = marks.points().iter().filter(|point| frame.x.contains(point.0) && y.contains(point.1));
-            let path: String = shown.map(|&(x, y)| mark_path(mark, frame.px(x), py(y))).collect();
-            if !path.is_empty() {
-                let _ = writeln!(svg, "<path d=\"{path}\" {}/>", mark_style(marks.number_at(k), hollow, theme));
-            }
-        }
+        Self::draw_marks(svg, frame, theme, y, series, false);
         self.draw_labels(svg, frame, theme, y);
         let ticks = self.ticks_at.iter().filter(|(x, _)| frame.x.contains(*x));
         let ticks: String = ticks
@@ -264,6 +296,20 @@ impl Panel {
 }
 
 impl Panel {
+    /// The marks that are faint, or those that aren't.
+    fn draw_marks(svg: &mut String, frame: &Frame, theme: Theme, y: &Axis, series: &[Series], faint: bool) {
+        for (k, marks) in series.iter().enumerate().filter(|(_, marks)| marks.faint == faint) {
+            let Drawn::Marks { mark, hollow } = marks.drawn else { continue };
+            let shown = marks.points().iter().filter(|point| frame.x.contains(point.0) && y.contains(point.1));
+            let py = |value: f64| frame.top + y.below_high(value, frame.height);
+            let path: String = shown.map(|&(x, y)| mark_path(mark, frame.px(x), py(y))).collect();
+            if !path.is_empty() {
+                let style = mark_style(marks.number_at(k), hollow, faint, theme);
+                let _ = writeln!(svg, "<path d=\"{path}\" {style}/>");
+            }
+        }
+    }
+
     fn draw_labels(&self, svg: &mut String, frame: &Frame, theme: Theme, y: &Axis) {
         let ink = Colour::Ink.value(theme);
         let mut above = f64::NEG_INFINITY;
@@ -393,6 +439,7 @@ fn line_path(points: &[(f64, f64)], px: impl Fn(f64) -> f64, py: impl Fn(f64) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Figure, Mark};
 
     #[test]
     fn labelled_points_are_ringed_and_their_text_stays_in_the_frame() {
@@ -419,5 +466,29 @@ mod tests {
     fn a_line_breaks_where_it_is_not_finite() {
         let points = [(0.0, 0.0), (1.0, 1.0), (2.0, f64::NAN), (3.0, 2.0)];
         assert_eq!(line_path(&points, |x| x, |y| y), "M0.00 0.00L1.00 1.00M3.00 2.00");
+    }
+
+    #[test]
+    fn what_needs_a_name_has_one_and_faint_marks_are_below_the_lines() {
+        let axis = || Axis::between("y", 0.0, 10.0);
+        let cells = Series::cells("yes", [((0.0, 1.0), (0.0, 1.0))]);
+        let named = Panel::new(axis()).with([cells]).blank_means("no").levels(vec![5.0, 50.0]).guides_named("limit");
+        let svg = Figure::new("f", "t", Axis::between("x", 0.0, 10.0)).panel(named).to_svg();
+        for name in [">yes<", ">no<", ">limit<"] {
+            assert!(svg.contains(name), "{name}: {svg}");
+        }
+        // In the legend and at 5, not at 50.
+        assert_eq!(svg.matches("stroke-dasharray=\"4 3\"").count(), 2, "{svg}");
+        let points = [(1.0, 1.0), (2.0, 2.0)];
+        let draw = |marks: Series| {
+            let panel = Panel::new(axis()).with([marks.number(0), Series::line("", points).number(1)]);
+            Figure::new("f", "t", Axis::between("x", 0.0, 10.0)).panel(panel).to_svg()
+        };
+        let marks = || Series::marks("", points, Mark::Circle).hollow();
+        let order = |svg: &str| {
+            let [mark, line] = ["#0050b0", "#e05206"].map(|colour| svg.find(&format!("stroke=\"{colour}")).unwrap());
+            mark < line
+        };
+        assert!(order(&draw(marks().faint())) && !order(&draw(marks())));
     }
 }

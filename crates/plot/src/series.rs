@@ -123,7 +123,8 @@ impl Series {
         self
     }
 
-    /// Draws a line thin and pale, as the raw values behind a mean; no effect on marks and areas.
+    /// Draws a line thin and pale, as the raw values behind a mean, and marks pale and below the lines, as
+    /// the measured values that a curve goes through; no effect on areas.
     #[must_use]
     pub fn faint(mut self) -> Self {
         self.faint = true;

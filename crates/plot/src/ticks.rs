@@ -1,5 +1,6 @@
 //! Round numbers along an axis, with their labels.
 
+use crate::escape::with_subscripts;
 use crate::escaped;
 
 /// The ticks of an axis.
@@ -108,7 +109,7 @@ impl Ticks {
 
 impl Reading {
     /// The title of an axis, as SVG text, with what its labels leave out: the offset after the name, the power of ten
-    /// before the unit, which is expected in brackets at the end.
+    /// before the unit, which is expected in brackets at the end. Subscripts of its symbols are lowered: ω_p.
     pub(crate) fn title(&self, title: &str) -> String {
         let (name, unit) = match title.rsplit_once(" (") {
             Some((name, unit)) if unit.ends_with(')') => (name, unit.trim_end_matches(')')),
@@ -124,7 +125,7 @@ impl Reading {
             (false, true) => format!(" ({power})"),
             (false, false) => format!(" ({power} {})", escaped(unit)),
         };
-        format!("{}{offset}{unit}", escaped(name))
+        with_subscripts(name, &format!("{offset}{unit}"))
     }
 }
 

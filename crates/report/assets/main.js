@@ -48,7 +48,7 @@
       series: [...bands(times, crowd.turns.bands, degrees), ...chosen(crowd.turns, degrees)],
     });
     say("phi", rule("turn"));
-    plots.add({ id: "omega", title: "Angular velocity φ̇", unit: "rad/s", least: 2e-3, height: 160, series: bands(curves.t, crowd.omega, 1) });
+    plots.add({ id: "omega", title: "Angular velocity ω", unit: "rad/s", least: 2e-3, height: 160, series: bands(curves.t, crowd.omega, 1) });
   }
   /** Where the peaks of impacts would dwarf all else: the size to cut them at. */
   function cutOf(series, least) {
@@ -129,6 +129,7 @@
     }
     return [...byBody.values()].map((own) => [own.map((row) => Number(row.dataset.t)), own]);
   })();
+  const hundredths = (x) => (Math.abs(x) < 5e-3 ? "0.00" : x.toFixed(2).replace("-", "−"));
   const decimals = Math.min(9, Math.max(3, Math.ceil(-Math.log10(data.dt))));
   /** The first few blocks that are free to move, by name and number. */
   const readOut = scenery.blocks.map(({ name }, k) => [name, k]).filter(([, k]) => !scenery.blocks[k].driven).slice(0, 4);
@@ -149,7 +150,7 @@
     byId("time-readout").textContent = text;
     byId("time-readout").dataset.t = t;
     byId("scene-readout").textContent = (crowd ? [] : readOut)
-      .map(([name, k]) => `${several ? `${name}: ` : ""}φ = ${fixed(frames.blocks[k].phi[frame] * degrees, 0.01)}°`)
+      .map(([name, k]) => `${several ? `${name}: ` : ""}φ = ${hundredths(frames.blocks[k].phi[frame] * degrees)}°`)
       .join(" · ");
     // In motion an impact is ringed for a moment, at rest only in the frame that it led to.
     scene.draw(position, clock ? 0.25 * factor() : 0);
@@ -342,7 +343,9 @@
   }
 
   function relayout() {
+    const wasNear = near !== null && !scene.isWhole();
     scene.layout();
+    if (wasNear) scene.closeUp();
     plots.redraw();
     show(frame);
   }
@@ -359,9 +362,13 @@
     if (wanted.has("t") && Number.isFinite(Number(wanted.get("t")))) seek(Number(wanted.get("t")));
   }
 
+  /** The body that the picture opens on, if it doesn't open on all. */
+  let near = null;
   relayout();
   scene.forces(how.value);
   exaggerate(scene.suitable(factors));
+  near = scene.closeUp();
+  if (near !== null) byId("scene-keys").prepend(`Opened close to ${near}; “Show all” shows all ${scenery.blocks.length} bodies. `);
   fromAddress();
   window.addEventListener("hashchange", fromAddress);
   let lastWidth = document.documentElement.clientWidth;

@@ -1,6 +1,6 @@
 // The data of the run, and how its numbers are read and written.
 
-const data = JSON.parse(document.getElementById("data").textContent);
+const data = JSON.parse(document.getElementById("data").textContent, unpackedColumn);
 const { scenery, frames, curves, forces, network, crowd } = data;
 const times = frames.t;
 const start = times[0];
@@ -25,6 +25,26 @@ function unpacked(text) {
     return x % 2 ? -(x + 1) / 2 : x / 2;
   };
   return { next, signed, more: () => at < bytes.length };
+}
+
+/** A column of numbers where JSON has one packed: whole multiples of a unit as differences of an order, 0 for null. */
+function unpackedColumn(_, value) {
+  if (typeof value?.packed !== "string") return value;
+  const { unit, order, packed } = value;
+  const numbers = unpacked(packed);
+  const column = [];
+  let [before, now] = [0, 0];
+  while (numbers.more()) {
+    const x = numbers.next() - 1;
+    if (x < 0) {
+      column.push(null);
+      continue;
+    }
+    const difference = x % 2 ? -(x + 1) / 2 : x / 2;
+    [before, now] = [now, difference + now + (order === 2 ? now - before : 0)];
+    column.push(now * unit);
+  }
+  return column;
 }
 
 if (frames.packed) {
@@ -98,6 +118,16 @@ function number(x, digits = 4) {
   const plain = size >= 10 ** digits ? x.toFixed(0) : x.toPrecision(digits);
   const text = size < 1e-4 || size >= 1e6 ? x.toExponential(digits - 1) : plain;
   return text.replace(/-/g, "−");
+}
+
+/** A number beside a plot whose largest value is `most`: with few digits, and no more decimals than tell a hundred-thousandth of that. */
+function readout(x, most, digits = 4) {
+  if (x === null || !Number.isFinite(x) || !(most >= 1e-3) || Math.abs(x) >= 1e6) return number(x, digits);
+  const decimals = Math.max(0, 5 - Math.ceil(Math.log10(most)));
+  const size = Math.abs(x);
+  const own = size > 0 ? digits - 1 - Math.floor(Math.log10(size)) : 0;
+  const text = x.toFixed(Math.min(12, Math.max(0, Math.min(own, decimals))));
+  return Number(text) === 0 ? "0" : text.replace("-", "−");
 }
 
 /** A quantity with three digits and the prefix that suits. */

@@ -24,6 +24,12 @@ const plots = (() => {
       if (series.label) key.append(series.label);
       series.readout = htmlElement("b", "", "", key);
     }
+    if (panel.guides?.length) {
+      panel.guideKey = htmlElement("span", "key", undefined, legend);
+      const swatch = svgElement("svg", { viewBox: "0 0 18 8", "aria-hidden": "true" }, panel.guideKey);
+      svgElement("path", { d: "M0 4h18", class: "guide" }, swatch);
+      panel.guideKey.append("critical angle");
+    }
     for (const [className, word] of panel.bands ? [["stick", "stick"], ["slip", "slip"], ["open", "open"]] : []) {
       const key = htmlElement("span", "key", undefined, legend);
       htmlElement("i", className, undefined, key);
@@ -53,6 +59,10 @@ const plots = (() => {
 
   const stroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${series.over ? "5 5" : dash(series.index)}; fill: none`;
 
+  /** The largest value of a panel, by which its readouts have their decimals. */
+  const largestOf = ({ series, cut }) => Math.min(cut?.limit ?? Infinity, series.reduce((most, { y, upper }) => [y, upper ?? []].reduce((largest, values) =>
+    values.reduce((size, x) => Math.max(size, Math.abs(x ?? 0) || 0), largest), most), 0));
+
   /** Dashes a line that lies on an earlier one, which then shows in the gaps: within 1 % of what the panel shows. */
   function tellApart({ series }) {
     const finite = series.flatMap(({ y }) => y.filter((x) => x !== null && Number.isFinite(x)));
@@ -67,6 +77,7 @@ const plots = (() => {
     panel.element.id = `panel-${panel.id}`;
     panel.element.dataset.unit = panel.unit ?? "";
     if (!panel.portrait) tellApart(panel);
+    panel.most = largestOf(panel);
     head(panel, panel.element);
     panel.svg = svgElement("svg", { class: "plot", role: "img", tabindex: 0, "aria-label": spoken.plot(panel) }, panel.element);
     panels.push(panel);
@@ -203,6 +214,7 @@ const plots = (() => {
       const [low, high] = range(panel);
       const y = (value) => margin.top + ((high - value) / (high - low)) * (bottom - margin.top);
       const yTicks = ticks(low, high, Math.floor((bottom - margin.top) / 28));
+      if (panel.guideKey) panel.guideKey.hidden = !panel.guides.some((at) => at >= low && at <= high);
       sayReading(panel, yTicks);
       body = axes(panel.svg, size, timeTicks(), yTicks, px, y)
         + `<g clip-path="url(#${clip})">`
@@ -262,6 +274,7 @@ const plots = (() => {
     const frameless = { width: size.width, height: size.height - portraitBottom + margin.bottom };
     const [xTicks, yTicks] = [ticks(x0, x1, Math.max(4, Math.floor(size.width / 90))), ticks(y0, y1, 6)];
     sayReading(panel, yTicks);
+    if (panel.guideKey) panel.guideKey.hidden = !panel.guides.some((at) => at > x0 && at < x1);
     const xLabel = `${panel.xName}${xTicks.offset ? ` ${xTicks.offset}` : ""} (${unitWith(xTicks.power, panel.xUnit)})`;
     panel.svg.innerHTML = axes(panel.svg, frameless, xTicks, yTicks, x, y)
       + `<text x="${(margin.left + right) / 2}" y="${size.height - 5}" text-anchor="middle">${xLabel}</text>`
@@ -299,7 +312,7 @@ const plots = (() => {
   function readOut(t) {
     for (const panel of panels.filter((one) => !one.portrait)) {
       for (const series of panel.series.filter(({ raw }) => !raw)) {
-        const shown = (value) => number(value !== null && Math.abs(value) < 1e-2 * panel.least ? 0 : value, series.upper ? 3 : 4);
+        const shown = (value) => readout(value !== null && Math.abs(value) < 1e-2 * panel.least ? 0 : value, panel.most, series.upper ? 3 : 4);
         const value = shown(read(series, t));
         series.readout.textContent = series.upper ? `${value} … ${shown(valueAt({ t: series.t, y: series.upper }, t))}` : value;
       }

@@ -212,6 +212,36 @@ const scene = (() => {
     return look((box[0] + box[2]) / 2, box[1] - 0.05 * (box[3] - box[1]), scale);
   }
 
+  /** Bodies of fewer pixels are hardly seen; the picture then opens closer, with bodies of this many. */
+  const [smallest, seen] = [7, 40];
+
+  /** The body that the picture opens on, where many that stand far apart would be specks in a picture of all. */
+  function closeUp() {
+    const free = scenery.blocks.map((_, k) => k).filter((k) => !scenery.blocks[k].driven);
+    if (free.length < 3) return null;
+    const size = 2 * free.map((k) => scenery.blocks[k].reach).sort((a, b) => a - b)[Math.floor(free.length / 2)];
+    const places = free.map((k) => truePose(k, 0).x);
+    const apart = Math.max(...places) - Math.min(...places);
+    // What has only one body fly off isn't seen better from near.
+    if (size * whole.scale >= smallest || apart * whole.scale < 0.5 * width) return null;
+    const moves = (k) => Math.hypot(frames.blocks[k].x[times.length - 1] - frames.blocks[k].x[0], frames.blocks[k].y[times.length - 1] - frames.blocks[k].y[0]);
+    const chosen = crowd ? crowd.distances.chosen[0] : free.reduce((best, k) => (moves(k) > moves(best) ? k : best));
+    const { x, y } = truePose(chosen, 0);
+    look(x, y - 0.6 * size, seen / size);
+    return scenery.blocks[chosen].name;
+  }
+
+  /** Where the picture is in all of it: a line at its top. */
+  function locator() {
+    if (isWhole()) return;
+    const [left, length] = [width - 132, 120];
+    const all = (width - padding.left - padding.right) / whole.scale;
+    const part = (x) => left + length * Math.min(1, Math.max(0, (x - whole.x) / all + 0.5));
+    const [a, b] = [part(view.x - 0.5 * width / view.scale), part(view.x + 0.5 * width / view.scale)];
+    svgElement("path", { d: `M${left} ${height - 12}h${length}`, class: "scale", "data-locator": "" }, root);
+    svgElement("path", { d: `M${a.toFixed(1)} ${height - 12}H${Math.max(b, a + 3).toFixed(1)}`, class: "scale here" }, root);
+  }
+
   function hatch(x, y, length, step, down) {
     let path = "";
     for (let k = 0; k <= length / step; k++) path += `M${(x + k * step).toFixed(1)} ${y.toFixed(1)}l-5 ${down}`;
@@ -251,8 +281,13 @@ const scene = (() => {
     for (let k = 1; k < line.length; k++) {
       const [[x0, y0], [x1, y1]] = [line[k - 1], line[k]];
       const [from, to] = [Math.max(x0, middle - ray), Math.min(x1, middle + ray)];
-      for (let x = 8 * Math.ceil(from / 8); x < to; x += 8) {
-        strokes += `M${x.toFixed(1)} ${(y0 + ((x - x0) / (x1 - x0)) * (y1 - y0)).toFixed(1)}l-5 7`;
+      // Evenly along the line, also where it is steep; at whole steps from its left end, so that they don't move with the picture.
+      const length = Math.hypot(x1 - x0, y1 - y0);
+      const [across, down] = [(x1 - x0) / length, (y1 - y0) / length];
+      const step = 8 * across;
+      const [back, into] = [(-5 * across - 7 * down).toFixed(1), (-5 * down + 7 * across).toFixed(1)];
+      for (let x = x0 + step * Math.ceil((from - x0) / step); x < to; x += step) {
+        strokes += `M${x.toFixed(1)} ${(y0 + ((x - x0) / across) * down).toFixed(1)}l${back} ${into}`;
       }
     }
     svgElement("path", { d: strokes, class: "hatch" }, layers.ground);
@@ -320,6 +355,7 @@ const scene = (() => {
     layers.loads = svgElement("g", {}, root);
     layers.arrows = svgElement("g", {}, root);
     scaleBar();
+    locator();
     draw(frame, remembered);
   }
 
@@ -627,6 +663,7 @@ const scene = (() => {
     zoomBy,
     panBy,
     follow,
+    closeUp,
     suitable,
     root,
     showAll: () => {

@@ -58,9 +58,13 @@ pub fn record_figures(record: &Arc<RecordScene>) -> Vec<(String, String)> {
 /// corrected.
 #[must_use]
 pub fn record_page(record: &Arc<RecordScene>, title: &str, subtitle: &str) -> String {
-    let section = section(std::slice::from_ref(record), &[RecordSummary::new(record)]);
-    super::document(title, subtitle, "", &section)
+    let section = section(std::slice::from_ref(record), &[RecordSummary::new(record)], false);
+    super::document(title, subtitle, RECORD_STYLE, &section)
 }
+
+/// Histories and spectra side by side where there is room.
+const RECORD_STYLE: &str = "#records { margin-top: 1.25rem; }\n\
+.pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); gap: 1rem; align-items: start; }\n";
 
 /// Response spectra over the natural period; `None` without records.
 pub(super) fn spectra(records: &[Arc<RecordScene>]) -> Option<Figure> {
@@ -84,8 +88,8 @@ pub(super) fn spectra(records: &[Arc<RecordScene>]) -> Option<Figure> {
     let x = Axis::logarithmic("Natural period T (s)", [low, high]).ok()?;
     let title = "Response spectra of the records, damping ratio 5 %: pseudo-acceleration and relative displacement";
     let figure = Figure::new("spectra", title, x)
-        .panel(panel("Pseudo-acceleration Sa (m/s²)", &teeter_record::Response::pseudo_acceleration))
-        .panel(panel("Displacement Sd (mm)", &|response| 1e3 * response.displacement));
+        .panel(panel("Pseudo-acceleration S_a (m/s²)", &teeter_record::Response::pseudo_acceleration))
+        .panel(panel("Displacement S_d (mm)", &|response| 1e3 * response.displacement));
     Some(figure)
 }
 
@@ -116,21 +120,30 @@ fn thinned(dt: f64, values: &[f64]) -> Vec<(f64, f64)> {
     points
 }
 
-/// The section of the page with a table of peaks and both figures; empty without records.
-pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary]) -> String {
+/// The section of the page with a table of peaks and both figures; empty without records. `named`: each with the motion that it
+/// drives and its file, which a page of one record has in its title.
+pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary], named: bool) -> String {
     let mut html = String::new();
     let Some(histories) = histories(records) else { return html };
     html.push_str(
         "<section id=\"records\" class=\"panel\" aria-labelledby=\"records-title\">\n<h3 id=\"records-title\">Recorded \
          accelerations</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"records-title\"><table>\n\
-         <thead><tr><th scope=\"col\">Motion</th><th scope=\"col\">Record</th><th scope=\"col\">Duration<br><small>s</small></th>\
+         <thead><tr>",
+    );
+    html.push_str(if named { "<th scope=\"col\">Motion</th><th scope=\"col\">Record</th>" } else { "" });
+    html.push_str(
+        "<th scope=\"col\">Duration<br><small>s</small></th>\
          <th scope=\"col\">PGA<br><small>m/s²</small></th><th scope=\"col\">PGV<br><small>m/s</small></th>\
          <th scope=\"col\">PGD<br><small>m</small></th><th scope=\"col\">Arias intensity<br><small>m/s</small></th>\
          <th scope=\"col\">Significant duration, 5–95 %<br><small>s</small></th></tr></thead>\n<tbody>\n",
     );
     for of in summaries {
         let text = if of.description.is_empty() { of.file.clone() } else { format!("{}: {}", of.file, of.description) };
-        let _ = write!(html, "<tr data-record=\"{}\"><td>{0}</td><td>{}</td>", escaped(&of.motion), escaped(&text));
+        let motion = escaped(&of.motion);
+        let _ = write!(html, "<tr data-record=\"{motion}\">");
+        if named {
+            let _ = write!(html, "<td>{motion}</td><td>{}</td>", escaped(&text));
+        }
         for number in [
             of.duration,
             of.peak_acceleration,
@@ -143,11 +156,11 @@ pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary])
         }
         html.push_str("</tr>\n");
     }
-    html.push_str("</tbody></table></div>\n");
+    html.push_str("</tbody></table></div>\n<div class=\"pictures\">\n");
     for figure in [Some(histories), spectra(records)].into_iter().flatten() {
         let _ = writeln!(html, "<div class=\"themed\">{}</div>", figure.theme(Theme::Page).to_svg());
     }
-    html.push_str("</section>\n");
+    html.push_str("</div></section>\n");
     html
 }
 

@@ -55,7 +55,8 @@ const NAMED: usize = 3;
 
 impl LeftOut {
     fn told(&self) -> String {
-        let size = if self.largest == 0.0 { "0".to_owned() } else { format!("{:.0e} {}", self.largest, self.unit) };
+        let size =
+            if self.largest == 0.0 { "0".to_owned() } else { format!("{} {}", power_of_ten(self.largest), self.unit) };
         let of = match self.of.len() {
             // The name of the quantity alone: `force`, not `force of`.
             0 => return format!("{} ({size})", self.what.trim_end_matches(" of")),
@@ -73,7 +74,21 @@ pub(crate) fn told(left_out: &[LeftOut]) -> String {
         return String::new();
     }
     let list: Vec<String> = left_out.iter().map(LeftOut::told).collect();
-    format!("Not drawn, as it stays below {ROUNDING:e} of its scale, which is rounding: {}.", list.join("; "))
+    format!(
+        "Not drawn, as it stays below {} of its scale, which is rounding: {}.",
+        power_of_ten(ROUNDING),
+        list.join("; ")
+    )
+}
+
+/// A number with one digit as a power of ten: `3 × 10⁻¹²`.
+fn power_of_ten(x: f64) -> String {
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let text = format!("{x:.0e}");
+    let Some((digit, power)) = text.split_once('e') else { return text };
+    let raised = power.chars().map(|c| c.to_digit(10).map_or('⁻', |digit| RAISED[digit as usize]));
+    let times = if digit == "1" { String::new() } else { format!("{digit} × ") };
+    format!("{times}10{}", raised.collect::<String>())
 }
 
 #[cfg(test)]
@@ -111,8 +126,11 @@ mod tests {
             unit: "rad",
         };
         let text = told(&[left_out("φ of", 1, 3e-12), left_out("slip of", 0, 0.0)]);
-        assert!(text.ends_with("rounding: φ of b0 (3e-12 rad); slip (0)."), "{text}");
+        assert!(text.ends_with("rounding: φ of b0 (3 × 10⁻¹² rad); slip (0)."), "{text}");
         let text = told(&[left_out("φ of", 2, 3e-12), left_out("x of", 15, 4e-12)]);
-        assert!(text.ends_with("φ of b0, b1 (at most 3e-12 rad); x of 15 blocks (at most 4e-12 rad)."), "{text}");
+        assert!(
+            text.ends_with("φ of b0, b1 (at most 3 × 10⁻¹² rad); x of 15 blocks (at most 4 × 10⁻¹² rad)."),
+            "{text}"
+        );
     }
 }

@@ -1,5 +1,6 @@
 //! The data of the page: what its script draws.
 
+mod column;
 mod crowd;
 mod impacts;
 mod network;
@@ -77,22 +78,6 @@ pub(crate) fn json(recorder: &PageRecorder, panels: &Panels, summary: &Summary) 
 fn digits(x: f64) -> f64 {
     rounded(x, DIGITS)
 }
-
-/// The values of a curve: with so many digits that its course is seen, however far from zero it is.
-fn course<'a>(values: impl Iterator<Item = &'a f64> + Clone) -> Vec<f64> {
-    let finite = values.clone().filter(|x| x.is_finite());
-    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &x| (a.min(x), b.max(x)));
-    let part = (high - low) / low.abs().max(high.abs());
-    // Less than that is rounding, which digits would only show.
-    let more = if part > CONSTANT { (SEEN - part.log10()).ceil() as usize } else { 0 };
-    values.map(|x| rounded(*x, DIGITS.max(more))).collect()
-}
-
-/// A curve that varies by a smaller part of its size is constant.
-const CONSTANT: f64 = 1e-9;
-
-/// A curve has at least this power of ten of steps between its least and its largest value.
-const SEEN: f64 = 5.0;
 
 fn time(t: f64) -> f64 {
     rounded(t, TIME_DIGITS)

@@ -131,7 +131,8 @@ impl Plots<'_> {
         let y = cut_axis(&label, range, &lines, panel.least);
         let contact = panel.of_contact.as_ref();
         let name = contact.map(|(_, name)| name.clone()).filter(|name| !name.is_empty());
-        self.marked(Panel::new(y).with(lines).telling_apart().note(note.or(name)), contact.map(|(pair, _)| *pair))
+        let drawn = Panel::new(y.clone()).with(lines).telling_apart().note(note.or(name));
+        self.marked(guided(drawn.levels(panel.guides.clone()), &panel.guides, &y), contact.map(|(pair, _)| *pair))
     }
 
     fn portrait(&self, portrait: &Portrait) -> Figure {
@@ -143,7 +144,7 @@ impl Plots<'_> {
         let x = Axis::around(format!("{} ({})", portrait.x_label, portrait.x_unit), x, portrait.least[0]);
         let y = Axis::around(format!("{} ({})", portrait.y_label, portrait.y_unit), values(&lines), portrait.least[1]);
         // A block's critical angles, where one of them is reached: beyond, it overturns.
-        let panel = Panel::new(y).with(lines).guides(portrait.guides.clone());
+        let panel = guided(Panel::new(y).with(lines).guides(portrait.guides.clone()), &portrait.guides, &x);
         Figure::new(portrait.id, &portrait.title, x).panel(panel)
     }
 
@@ -192,7 +193,7 @@ impl Plots<'_> {
     fn crowd_omega(&self) -> Figure {
         let bands: Vec<Vec<f64>> = (BAND_COLUMNS..2 * BAND_COLUMNS).map(|k| self.panels.curves.curve(k)).collect();
         let lines = Self::bands(&self.t, &bands, 1.0);
-        self.crowd_figure("omega", "Angular velocity of the bodies over time", "Angular velocity φ̇ (rad/s)", lines)
+        self.crowd_figure("omega", "Angular velocity of the bodies over time", "Angular velocity ω (rad/s)", lines)
     }
 
     /// Of one pair or two a figure of all; of more one of each, as all together wouldn't fit a page: of [`MOST_PAIRS`]
@@ -289,6 +290,15 @@ impl Plots<'_> {
         self.by_pairs("contact_forces", "Contact forces on the blocks over time", pairs)
     }
 }
+
+/// A panel with its critical angles named if one of them is on this axis.
+fn guided(panel: Panel, angles: &[f64], axis: &Axis) -> Panel {
+    let (low, high) = axis.ends();
+    if angles.iter().any(|angle| (low..=high).contains(angle)) { panel.guides_named(GUIDES) } else { panel }
+}
+
+/// What the dashed lines of plots of φ are, as on the page.
+const GUIDES: &str = "critical angle";
 
 /// Pairs whose contact forces are in one figure.
 const TOGETHER: usize = 2;

@@ -63,7 +63,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("residual", scientific(summary.energy.largest_residual)),
         ("notdrawn", not_drawn(&panels)),
         ("shapes", beams::shapes(recorder)),
-        ("records", accelerograms::section(&recorder.scenery.records, &summary.records)),
+        ("records", accelerograms::section(&recorder.scenery.records, &summary.records, true)),
         ("borne", beams::borne(recorder, summary)),
         ("thrust", thrust::section(recorder)),
         ("rocking", rocking::rocking(&half_cycles(recorder, summary), recorder, summary.dt)),
@@ -149,7 +149,7 @@ fn warnings(summary: &Summary) -> String {
             html,
             "<li data-warning=\"{}\"><span>{}</span>{count}</li>",
             escaped(&warning.code),
-            with_code(&warning.text)
+            with_code(warning.text.strip_prefix("warning: ").unwrap_or(&warning.text))
         );
     }
     html.push_str("</ul>\n</section>");

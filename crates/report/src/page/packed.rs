@@ -20,6 +20,11 @@ impl Packed {
         self.push(((x << 1) ^ (x >> 63)) as u64);
     }
 
+    /// The same, but 0 stays free for a number that is missing.
+    pub(crate) fn push_after_null(&mut self, x: i64) {
+        self.push(((x << 1) ^ (x >> 63)) as u64 + 1);
+    }
+
     /// The text.
     pub(crate) fn text(&self) -> String {
         const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -39,6 +44,26 @@ impl Packed {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+
+    /// The whole numbers of a text.
+    pub(crate) fn unpacked(text: &str) -> Vec<u64> {
+        const DIGITS: &str = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+        let bits: Vec<u64> = text.chars().filter_map(|c| DIGITS.find(c)).map(|k| k as u64).collect();
+        let bytes = bits.chunks(4).flat_map(|four| {
+            let all = four.iter().fold(0, |all, bits| all << 6 | bits) << (6 * (4 - four.len()));
+            (0..four.len() - 1).map(move |k| (all >> (16 - 8 * k) & 0xff) as u8)
+        });
+        let (mut numbers, mut number, mut place) = (Vec::new(), 0, 0);
+        for byte in bytes {
+            number |= u64::from(byte & 0x7f) << place;
+            place += 7;
+            if byte < 0x80 {
+                numbers.push(number);
+                (number, place) = (0, 0);
+            }
+        }
+        numbers
+    }
 
     #[test]
     fn the_text_is_that_of_the_standard() {

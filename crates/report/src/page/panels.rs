@@ -123,6 +123,22 @@ pub(crate) fn prefix(largest: f64) -> (&'static str, f64) {
     large.into_iter().chain(small).find(|(_, factor)| largest * factor >= 0.5).unwrap_or(("", 1.0))
 }
 
+/// The largest of forces as they are seen: where the peaks of impacts dwarf all else and are cut, the size at which they are.
+fn seen<'a>(forces: impl Iterator<Item = &'a f64>) -> f64 {
+    let mut sizes: Vec<f64> = forces.map(|f| f.abs()).filter(|f| f.is_finite()).collect();
+    let most = largest(&sizes);
+    sizes.retain(|f| *f > LEAST_FORCE * most);
+    sizes.sort_by(f64::total_cmp);
+    // By the rule of the plots' axes.
+    match sizes.get((0.9 * sizes.len() as f64) as usize) {
+        Some(usual) if most > 6.0 * usual => 3.0 * usual,
+        _ => most,
+    }
+}
+
+/// A force below this part of the largest is none.
+const LEAST_FORCE: f64 = 1e-6;
+
 /// The unit of a time axis as long as `duration`, with its number to a second.
 pub(crate) fn time_unit(duration: f64) -> (&'static str, f64) {
     let units = [("s", 1.0), ("ms", 1e3), ("µs", 1e6)];
@@ -137,7 +153,7 @@ impl Panels {
             let forces = forces(&curves);
             let mut panels = Self {
                 tangential: vec![true; recorder.scenery.contacts.len()],
-                force_unit: prefix(largest(forces.iter().flatten().flat_map(|forces| &forces.normal))),
+                force_unit: prefix(seen(forces.iter().flatten().flat_map(|forces| &forces.normal))),
                 curves,
                 forces,
                 panels: Vec::new(),
@@ -204,6 +220,15 @@ mod tests {
         assert_eq!(length_unit(LengthUnit::Centimetre, 99.0), ("cm", 100.0));
         assert_eq!(length_unit(LengthUnit::Centimetre, 6e3), ("m", 1.0));
         assert_eq!(length_unit(LengthUnit::Metre, 6e4), ("km", 1e-3));
+    }
+
+    #[test]
+    fn peaks_that_are_cut_dont_set_the_unit() {
+        let mut forces = vec![14.0; 99];
+        forces.push(1820.0);
+        assert_eq!((seen(forces.iter()), prefix(seen(forces.iter())).0), (42.0, ""));
+        assert_eq!(seen([14.0, 20.0, 0.0].iter()), 20.0);
+        assert_eq!(seen([].iter()), 0.0);
     }
 
     #[test]

@@ -11,7 +11,7 @@ pub struct HalfCycle {
     pub body: String,
     /// When φ is 0, s.
     pub t: f64,
-    /// φ̇ right before and right after the impact of the corner that comes down, rad/s; none where no impact is near the
+    /// ω right before and right after the impact of the corner that comes down, rad/s; none where no impact is near the
     /// passage, or there were too many impacts to keep them all.
     ///
     /// The two are those at the ends of the step of that impact, wherever the crossing is: a step of gravity is all that
@@ -30,7 +30,7 @@ pub struct HalfCycle {
 }
 
 impl HalfCycle {
-    /// φ̇ after the impact in parts of φ̇ before.
+    /// ω after the impact in parts of ω before.
     #[must_use]
     pub fn ratio(&self) -> Option<f64> {
         self.omega.filter(|omega| omega[0] != 0.0).map(|omega| omega[1] / omega[0])

@@ -22,7 +22,7 @@ fn arch(count: usize, end: &str) -> String {
 }
 
 /// The numbers of packed text: base64, then seven bits a byte, lowest first.
-fn unpacked(text: &str) -> Vec<u64> {
+pub(crate) fn unpacked(text: &str) -> Vec<u64> {
     let digit = |c: u8| match c {
         b'A'..=b'Z' => c - b'A',
         b'a'..=b'z' => c - b'a' + 26,

@@ -1,5 +1,6 @@
 //! The page and the figures of real runs: what they hold, what they must not hold, how large they are.
 
+use crate::network::unpacked;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
@@ -61,7 +62,19 @@ pub(crate) fn data(html: &str) -> Value {
 }
 
 pub(crate) fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+    if let Some(all) = value.as_array() {
+        return all.iter().map(|x| x.as_f64().unwrap_or(f64::NAN)).collect();
+    }
+    let (unit, second) = (value["unit"].as_f64().unwrap(), value["order"] == 2);
+    let mut before = [0_i64; 2];
+    let number = |n: u64| {
+        let Some(n) = n.checked_sub(1) else { return f64::NAN };
+        let difference = if n % 2 == 1 { -((n / 2) as i64) - 1 } else { (n / 2) as i64 };
+        let now = difference + if second { 2 * before[1] - before[0] } else { before[1] };
+        before = [before[1], now];
+        now as f64 * unit
+    };
+    unpacked(value["packed"].as_str().unwrap()).into_iter().map(number).collect()
 }
 
 /// The plot over time of this name.

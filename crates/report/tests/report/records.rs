@@ -58,11 +58,11 @@ fn a_record_is_measured_and_drawn() {
     for label in ["Acceleration a (m/s²)", "Velocity v (m/s)", "Displacement d (mm)", "t (s)"] {
         assert!(figure("records.svg").contains(label), "{label}");
     }
-    for label in ["Pseudo-acceleration Sa (m/s²)", "Displacement Sd (mm)", "Natural period T (s)"] {
+    for label in ["Pseudo-acceleration S<tspan", "Displacement S<tspan", "Natural period T (s)"] {
         assert!(figure("spectra.svg").contains(label), "{label}");
     }
     assert!(run.html.contains("id=\"records\"") && run.html.contains("data-record=\"ground.motion.x\""));
-    assert!(run.html.contains("Pseudo-acceleration Sa (m/s²)"));
+    assert!(run.html.contains("Pseudo-acceleration S<tspan"));
 }
 
 #[test]

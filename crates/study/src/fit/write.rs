@@ -2,7 +2,7 @@
 
 use super::{Estimate, Fit};
 use crate::compare::{STYLE, fixed, horizon_note, motion_figures, sentences_of};
-use crate::write::{html_list, html_table, percent, short};
+use crate::write::{html_list, html_table, percent, power, short};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use teeter_plot::{AxisError, Theme, escaped};
@@ -98,21 +98,55 @@ pub fn json(fit: &Fit, scene: &str, measured: &str, block: &str) -> String {
 
 /// A value with half of its 95 % interval, to two digits of the standard error.
 fn with_error(found: &Estimate) -> String {
-    let unit = if found.unit.is_empty() { String::new() } else { format!(" {}", found.unit) };
-    let (low, high) = found.interval();
-    let (below, above) = (found.value - low, high - found.value);
+    let Shown { value, error, interval: (low, high), unit } = Shown::of(found);
+    let (below, above) = (value - low, high - value);
     if (above - below).abs() > UNEVEN * (above + below) && (above + below).is_finite() {
         let decimals = decimals_of(0.25 * (above + below)).unwrap_or(5);
-        let [value, low, high] = [found.value, low, high].map(|value| format!("{value:.decimals$}"));
+        let [value, low, high] = [value, low, high].map(|value| format!("{value:.decimals$}"));
         return format!("{value}{unit} ({low} to {high}, 95 %)");
     }
-    let Some(decimals) = decimals(found) else { return format!("{}{unit}", short(found.value)) };
-    format!("{:.decimals$} ± {:.decimals$}{unit} (95 %)", found.value, 1.96 * found.standard_error)
+    let Some(decimals) = decimals_of(error) else { return format!("{}{unit}", short(value)) };
+    format!("{value:.decimals$} ± {:.decimals$}{unit} (95 %)", 1.96 * error)
 }
 
-/// The decimals that the error of a value leaves: two digits of it; `None` if it has no error.
-fn decimals(found: &Estimate) -> Option<usize> {
-    decimals_of(found.standard_error)
+/// An estimate as people read it: angles in degrees, as in the figures.
+struct Shown {
+    value: f64,
+    error: f64,
+    interval: (f64, f64),
+    /// With the space before it; empty for a pure number.
+    unit: String,
+}
+
+impl Shown {
+    fn of(found: &Estimate) -> Self {
+        // Keys have the unit that the user gave.
+        let (factor, unit) = match found.unit.as_str() {
+            "rad" if found.share_of_range.is_none() => (1f64.to_degrees(), "°".to_owned()),
+            "" => (1.0, String::new()),
+            unit => (1.0, format!(" {unit}")),
+        };
+        let (low, high) = found.interval();
+        let interval = (factor * low, factor * high);
+        Self { value: factor * found.value, error: factor * found.standard_error, interval, unit }
+    }
+
+    /// Value, standard error and 95 % interval as cells, each with the unit and to two digits of the error; `range` is that of a key, beyond
+    /// which nothing was sought.
+    fn cells(&self, range: Option<(f64, f64)>) -> [String; 3] {
+        let Self { value, error, interval: (low, high), unit } = self;
+        let decimals = decimals_of(*error).unwrap_or(5);
+        let unit = escaped(unit).replace(' ', "\u{a0}");
+        let number = |value: f64| fixed(value, decimals);
+        let error = if error.is_finite() { format!("{}{unit}", number(*error)) } else { "–".to_owned() };
+        let interval = match range {
+            Some((least, most)) if !(*low > least || *high < most) => {
+                format!("all of the range, {} to {}{unit}", power(least), power(most))
+            }
+            _ => format!("{} to {}{unit}", number(*low), number(*high)),
+        };
+        [format!("{}{unit}", number(*value)), error, interval]
+    }
 }
 
 fn decimals_of(error: f64) -> Option<usize> {
@@ -159,9 +193,9 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
     }
     let left = fit.cost.sqrt();
     texts.push(if left > 1.5 {
-        format!("warning: what is left is {} times the noise of the samples: the model doesn’t describe all of the motion, and the errors are only as good as the model", short(left))
+        format!("warning: the residuals are {} times the noise of the samples: the model doesn’t describe all of the motion, and the errors are only as good as the model", short(left))
     } else {
-        format!("what is left is {} times the noise of the samples", short(left))
+        format!("the residuals are {} times the noise of the samples", short(left))
     });
     texts.push(match fit.restarts.get(1) {
         None => format!("no start led to other values; {} runs were made", fit.evaluations.len()),
@@ -174,11 +208,17 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
     });
     if fit.residual_correlation > 0.1 {
         texts.push(format!(
-            "what is left at one row resembles that at the next (correlation {:.2}): the errors allow for that",
+            "the residual at one row resembles that at the next (correlation {:.2}): the errors allow for that",
             fit.residual_correlation
         ));
     }
     texts
+}
+
+/// The name of an estimate as HTML: keys as code, what is fitted with them in words.
+fn name_of(fit: &Fit, number: usize) -> String {
+    let name = escaped(&fit.estimates[number].name);
+    if number < fit.keys.len() { format!("<code>{name}</code>") } else { name }
 }
 
 /// The page.
@@ -189,22 +229,15 @@ pub fn page(fit: &Fit, title: &str, names: [&str; 3]) -> Result<String, AxisErro
     let [scene, measured, block] = names;
     let subtitle = format!("{scene} · {measured} · block {block} · teeter {}", env!("CARGO_PKG_VERSION"));
     let mut html = String::new();
-    let rows = fit.estimates.iter().filter(|found| found.value.is_finite()).map(|found| {
-        let (low, high) = found.interval();
-        // One more than the error leaves.
-        let decimals = decimals(found).map_or(5, |decimals| decimals + 1);
-        let number = |value: f64| escaped(&format!("{value:.decimals$}")).replace('-', "\u{2212}");
-        vec![
-            format!("<code>{}</code>", escaped(&found.name)),
-            format!("{} {}", number(found.value), escaped(&found.unit)),
-            short(found.standard_error),
-            format!("{} … {}", number(low), number(high)),
-        ]
+    let rows = fit.estimates.iter().enumerate().filter(|(_, found)| found.value.is_finite()).map(|(number, found)| {
+        let key = fit.keys.get(number);
+        let cells = Shown::of(found).cells(key.map(|key| key.bounds()));
+        std::iter::once(name_of(fit, number)).chain(cells).collect()
     });
     let _ = write!(
         html,
         "<section class=\"panel\"><h3>Fitted values</h3>\n{}{}</section>\n",
-        html_table(&["Key", "Value", "Standard error", "95 % interval"], rows),
+        html_table(&["Fitted", "Value", "Standard error", "95 % interval"], rows),
         html_list(&sentences(fit)[fit.estimates.iter().filter(|found| found.value.is_finite()).count()..])
     );
     html.push_str("<section class=\"panel\"><h3>Motion</h3>\n<div class=\"pictures\">\n");
@@ -214,7 +247,7 @@ pub fn page(fit: &Fit, title: &str, names: [&str; 3]) -> Result<String, AxisErro
     html.push_str("</div>");
     html.push_str(horizon_note(&fit.comparison));
     html.push_str("</section>\n<section class=\"panel\"><h3>Correlation of the estimates</h3>\n");
-    let heads: Vec<String> = fit.estimates.iter().map(|found| escaped(&found.name)).collect();
+    let heads: Vec<String> = (0..fit.estimates.len()).map(|number| name_of(fit, number)).collect();
     let heading: Vec<&str> = std::iter::once("").chain(heads.iter().map(String::as_str)).collect();
     let rows = fit.correlation.iter().zip(&heads).map(|(row, name)| {
         std::iter::once(name.clone()).chain(row.iter().map(|value| fixed(*value, 3))).collect::<Vec<_>>()

@@ -33,7 +33,7 @@ impl Channel {
     /// Its name in sentences.
     #[must_use]
     pub fn title(self) -> &'static str {
-        ["Angle φ", "Angular velocity ω", "Position x", "Position y", "Velocity vx", "Velocity vy"][self as usize]
+        ["Angle φ", "Angular velocity ω", "Position x", "Position y", "Velocity ẋ", "Velocity ẏ"][self as usize]
     }
 
     /// Its dimension.

@@ -53,6 +53,22 @@ impl Criterion {
         Some(Self::Above { output, value })
     }
 
+    /// Its meaning after "where" and "that", for titles.
+    pub(crate) fn clause(&self) -> String {
+        match self {
+            Self::Overturned => "a block overturned".to_owned(),
+            Self::Above { output, value } => format!("{output} is above {value}"),
+        }
+    }
+
+    /// What holds of the other cases, for legends.
+    pub(crate) fn opposite(&self) -> String {
+        match self {
+            Self::Overturned => "not overturned".to_owned(),
+            Self::Above { output, value } => format!("{output} at most {value}"),
+        }
+    }
+
     /// Its meaning, for figures and columns.
     pub(crate) fn words(&self) -> String {
         match self {

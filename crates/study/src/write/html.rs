@@ -18,8 +18,39 @@ pub(crate) fn html_table(heading: &[&str], rows: impl IntoIterator<Item = Vec<St
     html
 }
 
-/// Sentences as a list.
+/// Sentences as a list. Those of the terminal begin with a small letter, warnings with their word.
 pub(crate) fn html_list(sentences: &[String]) -> String {
-    let items: String = sentences.iter().map(|sentence| format!("<li>{}</li>\n", escaped(sentence))).collect();
-    format!("<ul>\n{items}</ul>\n")
+    let item = |sentence: &String| match sentence.strip_prefix("warning: ") {
+        Some(text) => format!("<li><b class=\"bad\">Warning:</b> {}</li>\n", with_code(text)),
+        None => format!("<li>{}</li>\n", with_code(&capitalised(sentence))),
+    };
+    format!("<ul>\n{}</ul>\n", sentences.iter().map(item).collect::<String>())
+}
+
+/// Text for HTML in which what stands between backquotes is code.
+pub(crate) fn with_code(text: &str) -> String {
+    let mut html = String::new();
+    for (number, piece) in text.split('`').enumerate() {
+        let piece = escaped(piece);
+        html.push_str(&if number % 2 == 1 { format!("<code>{piece}</code>") } else { piece });
+    }
+    html
+}
+
+/// A sentence begins with a capital.
+pub(crate) fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sentences_of_the_terminal_are_set_for_a_page() {
+        let list = html_list(&["run `teeter run` < now".to_owned(), "warning: widen `k`".to_owned()]);
+        assert!(list.contains("<li>Run <code>teeter run</code> &lt; now</li>"), "{list}");
+        assert!(list.contains("<li><b class=\"bad\">Warning:</b> widen <code>k</code></li>"), "{list}");
+    }
 }

@@ -49,8 +49,12 @@ pub(crate) fn percent(x: f64) -> String {
 
 /// A number with two significant digits, for sentences: `5.3 × 10⁻⁵`.
 pub(crate) fn power(x: f64) -> String {
-    let text = short(x);
-    let Some((digits, exponent)) = text.split_once('e') else { return text };
+    typeset(&short(x))
+}
+
+/// A number such as `5.3e-5` as people write it.
+pub(crate) fn typeset(text: &str) -> String {
+    let Some((digits, exponent)) = text.split_once('e') else { return text.to_owned() };
     let raised = exponent.chars().map(|c| match c {
         '-' => '⁻',
         '1' => '¹',

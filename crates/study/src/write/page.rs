@@ -1,6 +1,7 @@
 //! `tradeoff.html`: a self-contained page in the style of a run's report.
 
 use super::front;
+use super::html::{capitalised, with_code};
 use super::sentences::{NOTHING_MOVES, advised, command};
 use super::{duration, findings, percent, pruning, short};
 use crate::{Quantity, Row, Tradeoff};
@@ -37,7 +38,7 @@ pub fn page(study: &Tradeoff, scene: &[&str]) -> Result<String, AxisError> {
     page.pareto_front(&mut html);
     html.push_str("<section id=\"findings\" class=\"panel\" aria-labelledby=\"findings-title\"><h2 id=\"findings-title\">How the numbers are obtained</h2>\n<ul>\n");
     for sentence in findings(study).iter().chain(&pruning(study)) {
-        let _ = writeln!(html, "<li>{}</li>", with_code(sentence));
+        let _ = writeln!(html, "<li>{}</li>", with_code(&capitalised(sentence)));
     }
     let _ = writeln!(
         html,
@@ -49,22 +50,6 @@ pub fn page(study: &Tradeoff, scene: &[&str]) -> Result<String, AxisError> {
     page.candidates(&mut html);
     page.checks(&mut html);
     Ok(document(&title, &subtitle, &format!("{OWN_STYLE}{}", front::STYLE), &html))
-}
-
-/// The settings in a sentence, between backquotes, as code.
-fn with_code(sentence: &str) -> String {
-    let mut html = String::new();
-    for (number, piece) in sentence.split('`').enumerate() {
-        let piece = escaped(piece);
-        html.push_str(&if number % 2 == 1 { format!("<code>{piece}</code>") } else { piece });
-    }
-    html
-}
-
-/// A sentence begins with a capital.
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// What the parts of the page need.
@@ -108,7 +93,7 @@ impl Page<'_> {
             let time = row.measured().or(row.modelled()).map_or_else(String::new, duration);
             let kind = if row.measured().is_some() { "of CPU time" } else { "by counted work" };
             let accuracy = row.accuracy().map_or_else(String::new, |error| format!("{} off, ", percent(error)));
-            let warned = if row.warned().is_empty() { "" } else { ", warned of" };
+            let warned = if row.warned().is_empty() { "" } else { ", with warnings" };
             let _ = writeln!(html, "<li>{accuracy}{time} {kind}{warned}: <code>{}</code></li>", self.command(row));
         }
         html.push_str("</ol></section>\n");

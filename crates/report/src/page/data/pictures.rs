@@ -1,6 +1,7 @@
 //! The pictures: where everything is at the times of the slider, with the loads.
 
-use super::{course, time};
+use super::column::{Column, SEEN};
+use super::time;
 use crate::page::packed::Packed;
 use crate::page::recorder::{BLOCK_FRAME, PageRecorder};
 use crate::page::{DIGITS, rounded};
@@ -43,21 +44,21 @@ pub(super) struct LoadData {
     span: [f64; 2],
     speed: f64,
     /// By what force and couple are multiplied.
-    factor: Vec<f64>,
+    factor: Column,
 }
 
 #[derive(Serialize)]
 struct GroundFrames {
-    x: Vec<f64>,
-    y: Vec<f64>,
-    slope: Vec<f64>,
+    x: Column,
+    y: Column,
+    slope: Column,
 }
 
 #[derive(Serialize)]
 struct BlockFrames {
-    x: Vec<f64>,
-    y: Vec<f64>,
-    phi: Vec<f64>,
+    x: Column,
+    y: Column,
+    phi: Column,
 }
 
 #[derive(Serialize)]
@@ -66,7 +67,7 @@ struct BeamFrames {
     /// Second differences along the span, which are small, as those before its left end were 0.
     w: String,
     #[serde(skip_serializing_if = "Option::is_none")]
-    supports: Option<[Vec<f64>; 2]>,
+    supports: Option<[Column; 2]>,
 }
 
 /// A deflection is sent in this part of the span: finer than a picture shows, with few digits.
@@ -76,7 +77,7 @@ pub(super) fn frames(recorder: &PageRecorder) -> FrameData {
     let scenery = &recorder.scenery;
     let column = |k: usize| {
         let values: Vec<f64> = recorder.kept.frames.rows().map(|(_, row)| row[k]).collect();
-        course(values.iter())
+        Column::of_pose(&values)
     };
     let blocks = (0..scenery.blocks.len()).map(|k| BLOCK_FRAME * k);
     let mut start = BLOCK_FRAME * scenery.blocks.len();
@@ -156,7 +157,7 @@ fn packed(recorder: &PageRecorder) -> PackedFrames {
 pub(super) fn loads(recorder: &PageRecorder) -> Vec<LoadData> {
     let factor = |history: &History| {
         let signal = history.signal();
-        recorder.kept.frames.rows().map(|(t, _)| rounded(signal.value(t), 4)).collect()
+        Column::of(&recorder.kept.frames.rows().map(|(t, _)| signal.value(t)).collect::<Vec<_>>(), SEEN)
     };
     let on_blocks = recorder.scenery.forces.iter().map(|force| LoadData {
         name: force.name.clone(),

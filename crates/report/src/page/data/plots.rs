@@ -1,9 +1,10 @@
 //! The plots over time, the phase portraits and the contact forces.
 
-use super::{course, digits, time};
+use super::column::{Column, SEEN, SEEN_BELOW_PEAKS};
+use super::{digits, time};
+use crate::page::means;
 use crate::page::panels::{Line, Panels, Place};
 use crate::page::recorder::PageRecorder;
-use crate::page::{means, rounded};
 use crate::with_digits;
 use serde::Serialize;
 use teeter_integrator::ContactState;
@@ -33,17 +34,17 @@ struct SeriesData {
     index: usize,
     /// Whether its times are the borders of the forces, not those of the curves.
     at_borders: bool,
-    y: Vec<f64>,
+    y: Column,
     /// The pictures at which the value is another than the curve's, which shows the extremes of many steps: each counted from
     /// the one before, the first from 0; and the values there.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    other_at: Vec<usize>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    others: Vec<Option<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    other_at: Option<Column>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    others: Option<Column>,
 }
 
 impl SeriesData {
-    fn of(line: &Line, recorder: &PageRecorder, panels: &Panels, least: f64) -> Self {
+    fn of(line: &Line, recorder: &PageRecorder, panels: &Panels, least: f64, steps: f64) -> Self {
         let (mut other_at, mut others, mut before) = (Vec::new(), Vec::new(), 0);
         if let Some((column, factor)) = line.of.filter(|_| panels.curves.is_thinned()) {
             let pictures = || recorder.kept.frames.rows().map(|(t, _)| t);
@@ -55,12 +56,14 @@ impl SeriesData {
                 if value.is_some_and(|x| (x - drawn).abs() <= READ * x.abs().max(least)) {
                     continue;
                 }
-                other_at.push(picture - before);
-                others.push(value.map(|x| rounded(x, 5)));
+                other_at.push((picture - before) as f64);
+                others.push(value.unwrap_or(f64::NAN));
                 before = picture;
             }
         }
-        let y = course(line.y.iter());
+        let y = Column::of(&line.y, steps);
+        let any = !others.is_empty();
+        let (other_at, others) = (any.then(|| Column::counts(&other_at)), any.then(|| Column::of(&others, steps)));
         Self { label: line.label.clone(), index: line.number, at_borders: line.of.is_none(), y, other_at, others }
     }
 }
@@ -101,9 +104,9 @@ pub(super) struct PortraitData {
 struct PortraitSeries {
     label: String,
     index: usize,
-    t: Vec<f64>,
-    x: Vec<f64>,
-    y: Vec<f64>,
+    t: Column,
+    x: Column,
+    y: Column,
 }
 
 /// Means between the times `borders`.
@@ -124,11 +127,11 @@ pub(super) struct ForceData {
 struct PointForces {
     contact: usize,
     point: usize,
-    normal: Vec<f64>,
+    normal: Column,
     /// The mean of `normal` over windows about the borders, where it differs.
     #[serde(skip_serializing_if = "Option::is_none")]
-    mean: Option<Vec<f64>>,
-    tangential: Vec<f64>,
+    mean: Option<Column>,
+    tangential: Column,
     /// A letter a value: `o` open, `k` stick, `l` slip.
     state: String,
 }
@@ -146,7 +149,10 @@ pub(super) fn time_panels(recorder: &PageRecorder, panels: &Panels) -> Vec<Panel
         guides: panel.guides.iter().copied().map(digits).collect(),
         cut: panel.cut,
         late: panel.place == Place::Forces,
-        series: panel.lines.iter().map(|line| SeriesData::of(line, recorder, panels, panel.least)).collect(),
+        series: {
+            let steps = if panel.cut { SEEN_BELOW_PEAKS } else { SEEN };
+            panel.lines.iter().map(|line| SeriesData::of(line, recorder, panels, panel.least, steps)).collect()
+        },
     };
     panels.panels.iter().map(panel).collect()
 }
@@ -163,8 +169,8 @@ pub(super) fn portraits(panels: &Panels) -> Vec<PortraitData> {
             .lines
             .iter()
             .map(|line| {
-                let [x, y] = [&line.x, &line.v].map(|values| course(values.iter()));
-                let t = line.t.iter().copied().map(time).collect();
+                let [x, y] = [&line.x, &line.v].map(|values| Column::of(values, SEEN));
+                let t = Column::of(&line.t, SEEN_BELOW_PEAKS);
                 PortraitSeries { label: line.label.clone(), index: line.number, t, x, y }
             })
             .collect(),
@@ -186,9 +192,9 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         Some(PointForces {
             contact,
             point,
-            normal: forces.normal.iter().copied().map(digits).collect(),
-            mean: means::normal(&panels.curves, forces, window).map(|means| means.into_iter().map(digits).collect()),
-            tangential: forces.tangential.iter().copied().map(digits).collect(),
+            normal: Column::of(&forces.normal, SEEN_BELOW_PEAKS),
+            mean: means::normal(&panels.curves, forces, window).map(|means| Column::of(&means, SEEN)),
+            tangential: Column::of(&forces.tangential, SEEN_BELOW_PEAKS),
             state: state.collect(),
         })
     });

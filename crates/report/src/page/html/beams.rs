@@ -27,9 +27,9 @@ pub(super) fn borne(recorder: &PageRecorder, summary: &Summary) -> String {
             let class = if part > 1.0 { " class=\"bad\"" } else { "" };
             format!(", <span{class}>{} % of the yield strength</span>", rounded(100.0 * part, 3))
         });
-        let name = if several { format!("{}: ", escaped(&borne.beam)) } else { String::new() };
+        let name = if several { format!("{}: largest", escaped(&borne.beam)) } else { "Largest".to_owned() };
         Some(format!(
-            "<p data-beam=\"{}\" data-stress=\"{}\">{name}largest normal stress {} at x = {}, t = {}{}</p>\n",
+            "<p data-beam=\"{}\" data-stress=\"{}\">{name} normal stress {} at x = {}, t = {}{}</p>\n",
             escaped(&borne.beam),
             largest.stress,
             with_digits(largest.stress, "Pa", 4),

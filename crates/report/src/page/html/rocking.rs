@@ -37,8 +37,8 @@ pub(super) fn rocking(cycles: &[HalfCycle], recorder: &PageRecorder, dt: f64) ->
             .to_owned();
     head.push_str(if several { "<th scope=\"col\">Block</th>" } else { "" });
     head.push_str(
-        &"<th scope=\"col\">φ = 0 at<br><small>s</small></th><th scope=\"col\">φ̇⁻<br><small>rad/s</small></th>\
-        <th scope=\"col\">φ̇⁺<br><small>rad/s</small></th><th scope=\"col\">φ̇⁺/φ̇⁻</th>\
+        &"<th scope=\"col\">φ = 0 at<br><small>s</small></th><th scope=\"col\">ω⁻<br><small>rad/s</small></th>\
+        <th scope=\"col\">ω⁺<br><small>rad/s</small></th><th scope=\"col\">ω⁺/ω⁻</th>\
         <th scope=\"col\">Housner</th><th scope=\"col\">Next peak<br><small>{angle}</small></th>\
         <th scope=\"col\">Peak to peak</th></tr></thead>\n<tbody>\n"
             .replace("{angle}", angle_unit),
@@ -83,10 +83,17 @@ pub(super) fn rocking(cycles: &[HalfCycle], recorder: &PageRecorder, dt: f64) ->
         let _ = writeln!(html, "<p>… and {} more; all are in summary.json.</p>", cycles.len() - ROWS);
     }
     html.push_str(
-        "<p class=\"note\">φ̇⁻ and φ̇⁺ are the angular velocities right before and right after the step in which the \
+        "<p class=\"note\">ω⁻ and ω⁺ are the angular velocities right before and right after the step in which the \
          corner that comes down hits; a step of gravity is in them, too. Housner: 1 − (3/2) sin²α, for rigid ground without slip or bounce. A base that \
          gives way spreads the loss over the half cycle: the ratio is then nearer to 1, and the decay from peak to peak \
-         tells what is lost.</p>\n</section>",
+         tells what is lost.",
     );
+    html.push_str(if scenery.incline != 0.0 {
+        " Here φ is measured from the incline, in the plots from the horizontal; the swings to the two sides differ, as gravity isn’t \
+         normal to the incline."
+    } else {
+        ""
+    });
+    html.push_str("</p>\n</section>");
     html
 }

@@ -99,7 +99,7 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary) -> String {
             "impact_count" => ("Impacts", Some(summary.impact_count.to_string())),
             "horizon" => ("Predictable up to", seconds(summary.horizon)),
             "reclosure_count" => ("Contacts lost and found again", Some(summary.reclosure_count.to_string())),
-            "max_penetration" => ("Deepest penetration of a corner", Some(with_prefix(summary.max_penetration, "m"))),
+            "max_penetration" => ("Deepest penetration", Some(with_prefix(summary.max_penetration, "m"))),
             "energy.largest_residual" => ("Energy residual", Some(scientific(summary.energy.largest_residual))),
             "contact.unconverged_steps" => ("Steps not solved", Some(summary.contact.unconverged_steps.to_string())),
             "contact.max_residual" => ("Contact residual", Some(scientific(summary.contact.max_residual))),

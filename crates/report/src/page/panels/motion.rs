@@ -43,9 +43,9 @@ const COORDINATES: [Coordinate; 3] = [
         of: "φ of",
         velocity_id: "omega",
         symbol: "φ",
-        velocity_symbol: "φ̇",
+        velocity_symbol: "ω",
         name: "Angle φ",
-        velocity_name: "Angular velocity φ̇",
+        velocity_name: "Angular velocity ω",
     },
 ];
 const PHI: usize = 2;

@@ -9,6 +9,8 @@ use teeter_plot::{Axis, AxisError, Figure, Mark, Panel, Series, Theme};
 const MOST_MARKS: usize = 1200;
 /// Points of a line.
 const LINE_POINTS: usize = 4000;
+/// The number of a dashed blue line: the motion before a fit is told from the fitted one without colours, too.
+const DASHED: usize = 7;
 /// Heights of the panels of the motion and of the difference, mm.
 const HEIGHTS: [f64; 2] = [52.0, 22.0];
 
@@ -69,10 +71,10 @@ fn figure(comparison: &Comparison, before: Option<&Comparison>, channel: Channel
     let y = Axis::linear(format!("{} ({unit})", channel.title()), values)?;
     let every = measured.len().div_ceil(MOST_MARKS).max(1);
     let name = if found.is_measured { "measured" } else { "measured, as the rate of the samples" };
-    let marks = Series::marks(name, measured.into_iter().step_by(every), Mark::Circle).number(0).hollow();
+    let marks = Series::marks(name, measured.into_iter().step_by(every), Mark::Circle).number(6).hollow().faint();
     let mut series = vec![marks];
     if before.is_some() {
-        series.push(Series::line("before the fit", earlier).number(5));
+        series.push(Series::line("before the fit", earlier).number(DASHED));
     }
     let name = match (before.is_some(), found.is_measured) {
         (true, _) => "fitted",

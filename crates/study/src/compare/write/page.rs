@@ -1,19 +1,20 @@
 //! `compare.html`: a self-contained page in the style of a run's report.
 
 use super::motion_figures;
-use crate::compare::{ChannelComparison, Comparison};
-use crate::measured::Sign;
-use crate::write::{html_list, html_table, percent, short};
+use crate::compare::{ChannelComparison, Comparison, ImpactPair};
+use crate::measured::{Channel, Sign};
+use crate::write::{html_list, html_table, percent, power, short};
 use std::fmt::Write;
-use teeter_plot::{AxisError, Theme};
+use teeter_plot::{AxisError, Theme, escaped};
 use teeter_report::document;
 
 pub(crate) const STYLE: &str = "\
 main > section { margin-top: 1.5rem; }\n\
 .pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); gap: 1rem; }\n\
 .pictures svg { display: block; width: 100%; height: auto; max-width: 46rem; margin: 0 auto; }\n\
+p.headline { margin: .25rem 0 0; font-size: 1.125rem; font-weight: 600; max-width: 62rem; }\n\
 section li { margin: .3rem 0; overflow-wrap: anywhere; }\ncode { font-size: .9em; }\n\
-td:first-child { text-align: left; }\n.bar { display: inline-block; height: .6em; background: var(--c0); }\n";
+td:first-child { text-align: left; }\n";
 
 /// A number with so many decimals and a real minus.
 pub(crate) fn fixed(value: f64, decimals: usize) -> String {
@@ -85,7 +86,8 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
 fn quantity_row(found: &ChannelComparison) -> Vec<String> {
     let (unit, factor) = found.channel.shown();
     let d = found.differences;
-    let value = |x: f64| format!("{} {unit}", short(factor * x)).replace('-', "\u{2212}");
+    let unit = if unit == "°" { unit.to_owned() } else { format!("\u{a0}{unit}") };
+    let value = |x: f64| format!("{}{unit}", power(factor * x).replace('-', "\u{2212}"));
     let share = |x: f64| if d.scale > 0.0 { percent(x / d.scale) } else { "–".to_owned() };
     vec![
         found.channel.title().to_owned(),
@@ -93,7 +95,7 @@ fn quantity_row(found: &ChannelComparison) -> Vec<String> {
         share(d.rms),
         value(d.max),
         share(d.max),
-        format!("{} s", fixed(d.max_at, 4)),
+        format!("{}\u{a0}s{}", fixed(d.max_at, 4), if d.max_at < 0.0 { ", before the release" } else { "" }),
         value(d.mean),
         if found.is_measured { value(found.measured.noise) } else { "–".to_owned() },
     ]
@@ -106,7 +108,8 @@ fn quantity_row(found: &ChannelComparison) -> Vec<String> {
 pub fn page(comparison: &Comparison, title: &str, names: [&str; 3]) -> Result<String, AxisError> {
     let [run, measured, block] = names;
     let subtitle = format!("{run} · {measured} · block {block} · teeter {}", env!("CARGO_PKG_VERSION"));
-    let mut html = "<section class=\"panel\"><h3>Motion</h3>\n<div class=\"pictures\">\n".to_owned();
+    let mut html = format!("<p class=\"headline\">{}</p>\n", escaped(&headline(comparison)));
+    html.push_str("<section class=\"panel\"><h3>Motion</h3>\n<div class=\"pictures\">\n");
     for (_, svg) in motion_figures(comparison, None, Theme::Page)? {
         html.push_str(&svg);
     }
@@ -114,20 +117,13 @@ pub fn page(comparison: &Comparison, title: &str, names: [&str; 3]) -> Result<St
     html.push_str(horizon_note(comparison));
     html.push_str("</section>\n<section class=\"panel\"><h3>Differences</h3>\n");
     html.push_str(&html_table(
-        &[
-            "Quantity",
-            "Root mean square",
-            "of the largest",
-            "Largest",
-            "of the largest",
-            "at",
-            "Mean",
-            "Noise of the samples",
-        ],
+        &["Quantity", "Root mean square", "share", "Largest difference", "share", "at", "Mean", "Noise of the samples"],
         comparison.channels.iter().map(quantity_row),
     ));
     html.push_str(
-        "<p class=\"note\">Simulated minus measured, over the rows compared; relative to the largest measured value.</p></section>\n",
+        "<p class=\"note\">Simulated minus measured, over the rows compared; shares are of the largest measured value, of a position from its \
+         mean. Times are those of the run. Before its t = 0 the simulated block is held where it is released, and the measured one stands still: a \
+         difference there is noise, or a start that isn’t that of the scene.</p></section>\n",
     );
     html.push_str(&half_cycles(comparison));
     html.push_str(&impacts(comparison));
@@ -137,6 +133,44 @@ pub fn page(comparison: &Comparison, title: &str, names: [&str; 3]) -> Result<St
         html_list(&sentences_of(comparison))
     );
     Ok(document(&format!("Measured and simulated: {title}"), &subtitle, STYLE, &html))
+}
+
+/// The page in a sentence: how far the angle is off, or else the first quantity, and whether the impacts are the same.
+fn headline(comparison: &Comparison) -> String {
+    let Some(found) =
+        comparison.channels.iter().find(|found| found.channel == Channel::Phi).or(comparison.channels.first())
+    else {
+        return String::new();
+    };
+    let d = found.differences;
+    let (unit, factor) = found.channel.shown();
+    let gap = if unit == "°" { "" } else { "\u{a0}" };
+    let share = if d.scale > 0.0 { format!(", {} of the largest", percent(d.rms / d.scale)) } else { String::new() };
+    let last = comparison.measured.t.get(comparison.rows.end.saturating_sub(1)).copied().unwrap_or(0.0);
+    let mut text = format!(
+        "{}: root mean square difference {}{gap}{unit}{share}, up to t = {}\u{a0}s",
+        found.channel.title(),
+        power(factor * d.rms),
+        short(last)
+    );
+    let [measured, simulated] =
+        [|pair: &ImpactPair| pair.measured.is_some(), |pair: &ImpactPair| pair.simulated.is_some()]
+            .map(|has| comparison.impacts.iter().filter(|pair| has(pair)).count());
+    if measured + simulated > 0 {
+        let _ = write!(text, "; {measured} impacts measured, {simulated} simulated");
+    }
+    text
+}
+
+/// What a ratio above 1 means, if there is one.
+fn above_one(comparison: &Comparison) -> &'static str {
+    let crossings = comparison.impacts.iter().flat_map(|pair| [pair.measured, pair.simulated]).flatten();
+    if crossings.filter_map(|crossing| crossing.kept()).any(|kept| kept > 1.0) {
+        " A ratio above 1 is no gain of energy: on a base that gives way the impact takes time and rates swing on \
+         with the base, and of few or noisy rows it is the error of the extrapolation."
+    } else {
+        ""
+    }
 }
 
 /// What the dashed line in the figures is, if there is one.
@@ -213,6 +247,7 @@ fn impacts(comparison: &Comparison) -> String {
     format!(
         "<section class=\"panel\"><h3>Impacts</h3>\n{table}<p class=\"note\">Where φ crosses zero. ω before and after by lines \
          through five rows on each side, extrapolated to the crossing, for both motions alike. A dash: only one of the motions \
-         has the impact, or there are too few rows.</p></section>\n"
+         has the impact, or there are too few rows.{}</p></section>\n",
+        above_one(comparison)
     )
 }

@@ -105,7 +105,8 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
             let name = [study.name.clone(), cell(by)].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>();
             let line = Series::staircase(name.join(", "), points, end);
             // The colour tells the samples apart, the dash the studies.
-            series.push(line.number(if of.by.len() > 1 { place % 7 + 7 * number } else { number }));
+            let of_several = if studies.len() > 1 { place % 7 + 7 * number } else { place };
+            series.push(line.number(if of.by.len() > 1 { of_several } else { number }));
             let quantile = |share: f64| {
                 let place = (share * sample.len() as f64).ceil().max(1.0) as usize - 1;
                 sample.get(place).copied().map_or_else(String::new, digits)
@@ -172,6 +173,11 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
     }
     let title = format!("Distribution: {label}");
     let panel = Panel::new(Axis::between("Share of cases at or below", 0.0, 1.0)).with(series);
+    let by = asked.first().and_then(|asked| asked.by.as_deref()).map(axis_label);
+    if let Some(by) = &by {
+        notes.push(format!("Samples by {by}."));
+    }
+    let panel = panel.note(by);
     let mut tables = vec![("distribution.csv", table)];
     if studies.len() > 1 {
         tables.push(("distribution_tests.csv", tests));

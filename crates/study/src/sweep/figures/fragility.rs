@@ -213,8 +213,8 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
          of one record are not independent.",
         100.0 * CONFIDENCE
     ));
-    let event = asked.first().map(|asked| asked.event.words()).unwrap_or_default();
-    let title = format!("Fragility: probability of `{event}`");
+    let event = asked.first().map(|asked| asked.event.clause()).unwrap_or_default();
+    let title = format!("Fragility: probability that {event}");
     let mut all = panels.into_iter();
     let (_, (axis, panel)) = match all.next() {
         Some(first) => first,

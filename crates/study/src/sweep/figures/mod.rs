@@ -10,6 +10,7 @@ mod table;
 use super::Sweep;
 use super::output::Output;
 use super::spec::{Node, Reader};
+use crate::write::typeset;
 pub(crate) use distribution::Distribution;
 pub(crate) use fragility::Fragility;
 pub(crate) use overturning::Overturning;
@@ -168,7 +169,8 @@ pub fn study_figures(studies: &[Ensemble]) -> Result<Vec<StudyFigure>, AxisError
 /// A number with four digits, for pages.
 fn digits(x: f64) -> String {
     let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
-    if rounded == 0.0 || (1e-3..1e5).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
+    let plain = rounded == 0.0 || (1e-3..1e5).contains(&rounded.abs());
+    if plain { format!("{rounded}") } else { typeset(&format!("{rounded:e}")) }
 }
 
 /// The label of a column on an axis: of a key with its unit.

@@ -169,10 +169,19 @@ pub(super) fn figure(study: &Ensemble, asked: &Overturning) -> Result<StudyFigur
     }
     let mut notes = vec![format!("{events} of {cases} cases: {}.", asked.event.words())];
     if study.table.incomplete() > 0 {
-        notes.push(format!("{} cases without a result are left blank, too.", study.table.incomplete()));
+        notes.push(format!("{} cases without a result are left blank.", study.table.incomplete()));
     }
-    let title = format!("Where the event `{}` comes", asked.event.words());
-    let panel = Panel::new(y).with(series).height_mm(80.0);
+    let title = format!("Where {}", asked.event.clause());
+    let blank = match study.table.incomplete() {
+        0 if events == cases => String::new(),
+        0 => asked.event.opposite(),
+        _ if events == cases => "no result".to_owned(),
+        _ => format!("{}, or no result", asked.event.opposite()),
+    };
+    if cases > events {
+        rows.push(vec![asked.event.opposite(), (cases - events).to_string()]);
+    }
+    let panel = Panel::new(y).with(series).blank_means(blank).height_mm(80.0);
     Ok(StudyFigure {
         name: "overturning",
         figure: Figure::new("overturning", title.clone(), x).legend(Legend::Rows).panel(panel),
@@ -190,8 +199,8 @@ mod tests {
     use super::*;
     use crate::sweep::Sweep;
 
-    /// The share of the map that is filled if every case overturns.
-    fn filled(x: &str, y: &str) -> f64 {
+    /// The figure of a study over two keys, whose cases all overturn, but the last if it stands.
+    fn map(x: &str, y: &str, last_stands: bool) -> StudyFigure {
         let text = format!(
             "scene = \"s.toml\"\n[grid]\nsignal.w.frequency = {x}\nsignal.w.scale = {y}\n[outputs]\noverturned = \"overturned_at\"\n\
              [overturning]\nevent = \"overturned\"\nx = \"signal.w.frequency\"\ny = \"signal.w.scale\"\n"
@@ -201,11 +210,27 @@ mod tests {
         for number in 0..sweep.cases() {
             let values: Vec<String> =
                 sweep.case(number).into_iter().map(|(_, value)| value.trim_end_matches(" Hz").to_owned()).collect();
-            let _ = writeln!(table, "{number},{},1.5,complete,", values.join(","));
+            let at = if last_stands && number + 1 == sweep.cases() { "" } else { "1.5" };
+            let _ = writeln!(table, "{number},{},{at},complete,", values.join(","));
         }
         let asked = sweep.wanted().overturning.clone().unwrap();
         let study = Ensemble { name: "s".to_owned(), sweep, table: StudyTable::read(&table).unwrap() };
-        let svg = figure(&study, &asked).unwrap().figure.to_svg();
+        figure(&study, &asked).unwrap()
+    }
+
+    #[test]
+    fn what_is_blank_on_a_map_is_said_and_counted() {
+        let axis = "{ from = 1, to = 2, count = 3 }";
+        let some = map("[\"1 Hz\", \"2 Hz\"]", axis, true);
+        assert!(some.figure.to_svg().contains(">not overturned</text>"));
+        assert_eq!(some.summary.1.last().unwrap(), &["not overturned", "1"]);
+        assert_eq!(some.title, "Where a block overturned");
+        assert!(!map("[\"1 Hz\", \"2 Hz\"]", axis, false).figure.to_svg().contains("not overturned"));
+    }
+
+    /// The share of the map that is filled if every case overturns.
+    fn filled(x: &str, y: &str) -> f64 {
+        let svg = map(x, y, false).figure.to_svg();
         let clip = svg.split("<clipPath").nth(1).unwrap();
         let side = |name: &str| {
             let text = clip.split(&format!("{name}=\"")).nth(1).unwrap().split('"').next().unwrap();
