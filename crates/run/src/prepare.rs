@@ -102,7 +102,8 @@ impl RunJob {
                 return Err(PrepareError::FileExists(path.to_owned()));
             }
             let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            if !folder.is_dir() && !(what == "animation" && folder == results) {
+            let is_made = what == "animation" && folder == results;
+            if !(folder.is_dir() || is_made) {
                 return Err(PrepareError::NoFolder(folder.to_owned()));
             }
         }
