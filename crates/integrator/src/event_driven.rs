@@ -19,7 +19,7 @@ use instant::Watch;
 use modes::{Mode, Pressing};
 use runge_kutta::RungeKutta;
 use smooth::{MASSES, Smooth};
-use teeter_detect::{Candidates, ContactId};
+use teeter_detect::{Candidate, Candidates, ContactId};
 
 /// The settings of [`EventDriven`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,6 +114,10 @@ pub struct EventDriven {
     a_pressed: Vec<f64>,
     /// J̇v of those that don't part.
     biases: Vec<Vector<2>>,
+    /// Those that part, with their normal velocity (m/s) and the normal part of J̇v (m/s²).
+    parting: Vec<(Candidate<2>, f64, f64)>,
+    /// Those of them that would be back at once.
+    returning: Vec<ContactId>,
     ids: Vec<ContactId>,
     numbers: Vec<f64>,
     /// The step that the method would take next, s.
@@ -184,6 +188,8 @@ impl EventDriven {
             in_lowest_bounce: Vec::new(),
             a_pressed: Vec::new(),
             biases: Vec::new(),
+            parting: Vec::new(),
+            returning: Vec::new(),
             ids: Vec::new(),
             numbers: Vec::new(),
             h: 0.0,
@@ -236,6 +242,8 @@ impl Scheme<2> for EventDriven {
         self.found.reserve(contacts);
         self.in_lowest_bounce.reserve(contacts);
         self.biases.reserve(contacts);
+        self.parting.reserve(contacts);
+        self.returning.reserve(contacts);
         self.a_pressed.reserve(size.v);
         self.numbers.reserve(numbers);
         self.mean.resize(size.q, 0.0);

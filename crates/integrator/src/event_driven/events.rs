@@ -199,6 +199,9 @@ impl EventDriven {
                 if duration > 0.0 {
                     self.smooth.project(model, t, &mut self.y, work)?;
                     self.end_phase(model, from, t, duration, work)?;
+                } else if self.y[size.q..size.q + size.v] != from.v {
+                    // What the contacts' coming to rest did to the velocities decides what they do.
+                    self.end_phase(model, from, t, f64::MIN_POSITIVE, work)?;
                 }
                 return Ok(stop);
             }

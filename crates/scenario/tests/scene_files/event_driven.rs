@@ -330,3 +330,35 @@ fn a_pile_at_rest_shares_its_friction() {
         assert!((q - other).abs() < 1e-9, "{:?} and {:?}", long.q, short.q);
     }
 }
+
+/// A trapezoid tapers upwards on one that slides under it, and rattles between its feet. While it falls with the lower one,
+/// nothing closes the foot that was thrown off; the push on its other foot does.
+#[test]
+fn rattling_between_two_feet_ends() {
+    bounces_end(
+        "[time]\nend = '0.2 s'\nstep = '1 ms'\n[ground]\n\
+         [contact.all]\nbetween = ['*', '*']\nfriction = 0.237\nrestitution = 0.419\n\
+         [block.under]\ndensity = '827 kg/m^3'\ndepth = '10 cm'\non = 'ground'\nat = '0 m'\n\
+         shape = { kind = 'trapezoid', bottom = '12.61 cm', top = '12.97 cm', height = '21.27 cm' }\n\
+         velocity = ['1.043 m/s', '0 m/s']\n\
+         [block.over]\ndensity = '827 kg/m^3'\ndepth = '10 cm'\non = 'under'\nat = '1.24 cm'\n\
+         shape = { kind = 'trapezoid', bottom = '7.8 cm', top = '4.86 cm', height = '17.63 cm' }\n",
+    );
+}
+
+/// A pentagon rattles to rest on a block: the last bounces, which are none, still turn the slides of other contacts.
+#[test]
+fn what_slides_after_the_last_bounce_is_found() {
+    bounces_end(
+        "[time]\nend = '0.5 s'\nstep = '1 ms'\n\
+         [ground]\nprofile = { points = [['-0.8 m', '0 m'], ['-0.6462 m', '0.1196 m'], \
+         ['-0.2552 m', '0.1352 m'], ['0.0155 m', '0.1209 m'], ['0.7871 m', '0.1209 m']] }\n\
+         [contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.563\nrestitution = 0.0\n\
+         [contact.blocks]\nbetween = ['b*', 'b*']\nfriction = 0.458\nrestitution = 0.0\n\
+         [block.b0]\ndensity = '1762 kg/m^3'\ndepth = '10 cm'\nposition = ['0.0777 m', '0.3497 m']\n\
+         shape = { kind = 'regular', sides = 5, radius = '0.0859 m' }\nangle = '10.64 deg'\n\
+         velocity = ['0.108 m/s', '-1.522 m/s']\nspin = '7.880 rad/s'\n\
+         [block.b1]\ndensity = '1762 kg/m^3'\ndepth = '10 cm'\nwidth = '0.2273 m'\nheight = '0.2192 m'\n\
+         on = 'ground'\nat = '0.3479 m'\ntilt = '-7 deg'\nvelocity = ['-0.317 m/s', '0 m/s']\n",
+    );
+}
