@@ -24,6 +24,25 @@ const si = (unit) => angleUnits[unit] ?? lengthUnits[unit] ?? inSi(unit);
 /** The unit in brackets at the end of the name of an axis. */
 const unitOf = (label) => label.match(/\(([^()]*)\)$/)?.[1] ?? "";
 
+/** Deflections of a beam in its pictures, in units of its own: whole numbers of seven bits a byte with the lowest first, in base64. */
+function deflections(text, points) {
+  const numbers = [];
+  let [number, place] = [0n, 0n];
+  for (const byte of Buffer.from(text, "base64")) {
+    number |= BigInt(byte & 127) << place;
+    place += 7n;
+    if (byte & 128) continue;
+    numbers.push(Number(number & 1n ? -(number + 1n) / 2n : number / 2n));
+    [number, place] = [0n, 0n];
+  }
+  // Second differences along the span; each picture begins anew.
+  return numbers.reduce((w, difference, i) => {
+    const [one, two] = [1, 2].map((back) => (i % points < back ? 0 : w[i - back]));
+    w.push(difference + 2 * one - two);
+    return w;
+  }, []);
+}
+
 /**
  * Plots whose content is below the rounding of its scale. `drawn`: ids of the plots on the page; `data`: what its script draws;
  * `envelopes`: rows of envelopes.csv, if there are.
@@ -80,7 +99,7 @@ export function plotsOfRounding(drawn, data, summary, envelopes) {
     require(id, "largest motion", far, id === "distance" ? Math.max(...scenery.blocks.map(reach)) : 1);
   };
   const overSpan = {
-    shapes: () => require("shapes", "deflection", all(data.frames.beams, ({ unit, w }) => unit * largest(w)), 1e-3 * Math.min(...scenery.beams.map((beam) => beam.span))),
+    shapes: () => require("shapes", "deflection", all(data.frames.beams.map(({ unit, w }, k) => unit * largest(deflections(w, scenery.beams[k].points))), (w) => w), 1e-3 * Math.min(...scenery.beams.map((beam) => beam.span))),
     envelopes: () => {
       const most = (what) => all(envelopes, (row) => all(Object.keys(row).filter((name) => name.startsWith(what)), (name) => row[name]));
       require("envelopes", "moment or force", Math.max(most("moment"), most("shear") * span), 0);
