@@ -25,7 +25,7 @@ pub fn escaped(text: &str) -> String {
 
 /// By how much subscripts are lowered and how large they are, in the figure's units.
 const LOWERED: f64 = 3.0;
-const SUBSCRIPT: f64 = 8.5;
+const SUBSCRIPT: f64 = 10.0;
 
 /// Text as SVG in which the subscripts of symbols are lowered: a symbol is one letter, its subscript the letters and
 /// digits after `_`. Words with an underscore, such as names of keys, stay as they are. `rest` follows, as SVG.
@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn subscripts_of_symbols_are_lowered_and_names_of_keys_are_not() {
-        let lowered = |text: &str| format!("<tspan dy=\"3\" font-size=\"8.5\">{text}</tspan>");
+        let lowered = |text: &str| format!("<tspan dy=\"3\" font-size=\"10\">{text}</tspan>");
         assert_eq!(
             with_subscripts("Frequency ω_p/p & more", ""),
             format!("Frequency ω{}<tspan dy=\"-3\">/p &amp; more</tspan>", lowered("p"))
