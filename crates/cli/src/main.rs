@@ -1,5 +1,7 @@
 //! The program `teeter`.
 
+#[cfg(feature = "animation")]
+mod animate;
 mod check;
 mod compare;
 mod console;
@@ -7,6 +9,8 @@ mod fit;
 mod interrupt;
 mod measured;
 mod new;
+#[cfg(feature = "pdf")]
+mod pdf;
 mod progress;
 mod record;
 mod render;
@@ -41,6 +45,7 @@ enum Command {
     /// Simulate a scene and write its motion, contacts, energy and summary
     #[command(after_help = "Examples:\n  teeter run scenarios/free-rocking-on-beam.toml\n  \
         teeter run scene.toml --out results --set time.step=50us --set contact.feet.friction=0.3\n  \
+        teeter run scene.toml --animate motion.gif --animate-speed 0.1\n  \
         teeter run scene.toml --checkpoint-every \"0.1 s\"            # survives a kill:\n  \
         teeter run scene.toml --checkpoint-every \"0.1 s\" --resume   # continues, to the same bytes")]
     Run {
@@ -105,6 +110,9 @@ enum Command {
         /// the interval of the tables
         #[arg(long, conflicts_with = "resume")]
         vtk: bool,
+        #[cfg(feature = "animation")]
+        #[command(flatten)]
+        animate: animate::Animate,
         /// Run again whenever the scene or a file that it names changes, until Ctrl-C
         #[arg(long, conflicts_with_all = ["resume", "dump_unconverged"])]
         watch: bool,
@@ -252,6 +260,9 @@ enum Command {
         /// Print a JSON object, with the whole spectrum and all digits
         #[arg(long)]
         json: bool,
+        /// Width of the figures: 84 mm and 174 mm are one and two columns of most journals
+        #[arg(long, value_name = "WIDTH", default_value = "120 mm", value_parser = record::figure_width, requires = "out")]
+        figure_width: f64,
         /// Write a page, its figures, the motion over time and the numbers to DIR
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
@@ -368,6 +379,23 @@ enum Command {
         #[arg(value_name = "DIR")]
         folder: PathBuf,
     },
+    /// Write figures as PDF, with their font embedded, each beside its SVG
+    #[cfg(feature = "pdf")]
+    #[command(
+        after_help = "Examples:\n  teeter run scene.toml --set output.figure_width=\"84 mm\"   # one column of a journal\n  \
+        teeter pdf runs/scene\n  teeter pdf record/figures/spectra.svg --force"
+    )]
+    Pdf {
+        /// Figures (.svg) that this program wrote, folders of such, or folders of results
+        #[arg(value_name = "PATH", required = true)]
+        paths: Vec<PathBuf>,
+        /// Replace PDF files that are there
+        #[arg(long)]
+        force: bool,
+        /// Print only errors
+        #[arg(long)]
+        quiet: bool,
+    },
     /// Print the JSON Schema of scene files, for editors
     #[command(after_help = "Examples:\n  teeter schema > scene.schema.json\n  teeter schema --format markdown")]
     Schema {
@@ -483,6 +511,8 @@ fn main() -> ExitCode {
             from,
             dump_unconverged,
             vtk,
+            #[cfg(feature = "animation")]
+            animate,
             watch,
         } => {
             set.extend(accuracy.map(|accuracy| ("time.accuracy".to_owned(), accuracy)));
@@ -507,6 +537,8 @@ fn main() -> ExitCode {
                 horizon,
                 vtk,
                 dump_unconverged,
+                #[cfg(feature = "animation")]
+                animate,
             };
             if watch { watch::watch(options).into() } else { run::run(&options).into() }
         }
@@ -542,6 +574,7 @@ fn main() -> ExitCode {
             spectral_acceleration,
             period,
             json,
+            figure_width,
             out,
             force,
         } => {
@@ -561,7 +594,7 @@ fn main() -> ExitCode {
                 ("period", period),
             ];
             let keys = keys.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?))).collect();
-            record::record(&record::Options { file, keys, json, out, force }).into()
+            record::record(&record::Options { file, keys, json, figure_width, out, force }).into()
         }
         Command::Compare { run, measured, offset, out, quiet, force } => {
             compare::compare(&compare::Options { run, measured, offset, out, quiet, force }).into()
@@ -580,6 +613,8 @@ fn main() -> ExitCode {
         Command::New { file, from, list, force } => new::new(&new::Options { file, from, list, force }).into(),
         Command::Completions { shell } => shell::completions(shell).into(),
         Command::Man { folder } => shell::man(&folder).into(),
+        #[cfg(feature = "pdf")]
+        Command::Pdf { paths, force, quiet } => pdf::pdf(&pdf::Options { paths, force, quiet }).into(),
         Command::Schema { format } => schema::print(format).into(),
     }
 }

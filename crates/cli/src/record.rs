@@ -9,6 +9,8 @@ use std::sync::Arc;
 use teeter_record::{Record, STANDARD_GRAVITY};
 use teeter_report::{RecordSummary, Results, record_figures, record_page, spectrum_periods};
 use teeter_scenario::diagnostic::{Diagnostic, Diagnostics};
+use teeter_scenario::dimension::Dimension;
+use teeter_scenario::quantity;
 use teeter_scenario::readable::{shortest, with_digits, with_unit};
 use teeter_scenario::record_alone;
 use teeter_scenario::scene::RecordScene;
@@ -28,8 +30,19 @@ pub(crate) struct Options {
     /// The corrections, by the keys of a recorded motion in a scene.
     pub(crate) keys: Vec<(String, String)>,
     pub(crate) json: bool,
+    /// Width of the figures, m.
+    pub(crate) figure_width: f64,
     pub(crate) out: Option<PathBuf>,
     pub(crate) force: bool,
+}
+
+/// `84 mm` and the like, in m.
+pub(crate) fn figure_width(text: &str) -> Result<f64, String> {
+    match quantity::parse(text, Dimension::LENGTH) {
+        Ok(width) if (0.06..=0.3).contains(&width) => Ok(width),
+        Ok(_) => Err("figures are 60 mm to 300 mm wide, such as \"84 mm\"".to_owned()),
+        Err(error) => Err(error.to_string()),
+    }
 }
 
 pub(crate) fn record(options: &Options) -> Exit {
@@ -61,7 +74,8 @@ pub(crate) fn record(options: &Options) -> Exit {
         }
     };
     let text = if options.json { held.json_text() } else { held.text() };
-    let written = results.map_or(Ok(()), |results| held.write(&results).map_err(|error| error.to_string()));
+    let written =
+        results.map_or(Ok(()), |results| held.write(&results, options.figure_width).map_err(|error| error.to_string()));
     match print(&text).and(written) {
         Ok(()) => Exit::FinishedRun,
         Err(why) => {
@@ -214,9 +228,9 @@ impl<'a> Held<'a> {
         text
     }
 
-    fn write(&self, results: &Results) -> Result<(), teeter_report::ResultsError> {
+    fn write(&self, results: &Results, figure_width: f64) -> Result<(), teeter_report::ResultsError> {
         results.write("record.csv", self.csv())?;
-        for (name, svg) in record_figures(self.scene) {
+        for (name, svg) in record_figures(self.scene, 1e3 * figure_width) {
             results.write(&format!("figures/{name}"), svg)?;
         }
         let corrections = match self.corrections() {

@@ -65,6 +65,8 @@ pub(crate) struct Options {
     pub(crate) horizon: bool,
     /// File for the state before the first unsolved step.
     pub(crate) dump_unconverged: Option<PathBuf>,
+    #[cfg(feature = "animation")]
+    pub(crate) animate: crate::animate::Animate,
 }
 
 impl Options {
@@ -97,6 +99,10 @@ impl Options {
         }
         if let Some(path) = &self.dump_unconverged {
             job = job.dump_unconverged(path);
+        }
+        #[cfg(feature = "animation")]
+        if let Some((path, animation)) = self.animate.file() {
+            job = job.animate(path, animation);
         }
         Ok(job)
     }
@@ -181,7 +187,7 @@ fn refuse(console: Console, error: &PrepareError) -> Exit {
         PrepareError::Resume(_) => {
             console.error(&format!("error: {error}\nhelp: --force instead of --resume starts over"));
         }
-        PrepareError::DumpExists(_) => console.error(&format!("error: {error}; --force replaces it")),
+        PrepareError::FileExists(_) => console.error(&format!("error: {error}; --force replaces it")),
         error => console.error(&format!("error: {error}")),
     }
     Exit::BadInput
@@ -234,6 +240,10 @@ fn conclude(console: Console, options: &Options, done: &FinishedRun) -> Exit {
         let count = exported.count;
         let problems = if count == 1 { "problem" } else { "problems" };
         console.note(&format!("  {count} contact {problems} in {}", exported.folder.display()));
+    }
+    #[cfg(feature = "animation")]
+    if let (Some((path, asked)), Some(made)) = (options.animate.file(), &done.animation) {
+        console.note(&crate::animate::describe(path, &asked, made));
     }
     match &done.dump {
         Some(StateDump::Written(path)) => {

@@ -237,6 +237,8 @@ const BEYOND: &[&str] = &[
     "denormal height",
     "tiny height",
     "huge height",
+    "friction of feet of a disc",
+    "friction of feet between blocks",
     "step longer than the run",
     "too many steps",
     "tilt over a quarter turn",

@@ -121,7 +121,8 @@ impl<const D: usize> HalfSpace<D> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wiring {
     /// The number of their pair. Two may have the same one if they are of the same body with two bodies
-    /// of one part, such as corners on a beam and sides against its fibre.
+    /// of one part, such as corners on a beam and sides against its fibre, or of the same bodies with another law, such as that of
+    /// one foot.
     pub pair: u32,
     /// The law of its contacts.
     pub law: LawId,

@@ -28,6 +28,8 @@ pub struct PointPair<const D: usize> {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PointDetector<const D: usize> {
     pairs: Vec<PointPair<D>>,
+    /// The points with a law of their own, in the order of their identities.
+    laws: Vec<(ContactId, LawId)>,
 }
 
 /// Points placed at once: a block's four corners share the sine and cosine of its angle.
@@ -37,7 +39,26 @@ impl<const D: usize> PointDetector<D> {
     /// A detector of these pairs.
     #[must_use]
     pub fn new(pairs: Vec<PointPair<D>>) -> Self {
-        Self { pairs }
+        Self { pairs, laws: Vec::new() }
+    }
+
+    /// Gives points laws of their own instead of that of their pair, such as another friction to each foot of a block: each by
+    /// the identity of its contact. Default: all points of a pair have its law.
+    #[must_use]
+    pub fn with_laws(mut self, laws: impl IntoIterator<Item = (ContactId, LawId)>) -> Self {
+        self.laws.extend(laws);
+        self.laws.sort_unstable_by_key(|(id, _)| *id);
+        self
+    }
+
+    /// The law of a point of a pair.
+    #[inline]
+    fn law(&self, pair: &PointPair<D>, k: usize) -> LawId {
+        if self.laws.is_empty() {
+            return pair.law;
+        }
+        let own = self.laws.binary_search_by_key(&ContactId::new(pair.pair, k as u32), |(id, _)| *id);
+        own.map_or(pair.law, |place| self.laws[place].1)
     }
 
     /// The pairs, in the order in which they are looked at.
@@ -58,7 +79,7 @@ impl PointDetector<2> {
         let mut place = [Vector::<2>::zeros()];
         at.place(pair.body, std::slice::from_ref(point), &mut place);
         let (foot, gap) = pair.foot(at, &place[0])?;
-        (gap <= f64::INFINITY).then(|| pair.candidate(k, &foot, gap))
+        (gap <= f64::INFINITY).then(|| pair.candidate(k, self.law(pair, k), &foot, gap))
     }
 }
 
@@ -73,10 +94,10 @@ impl PointPair<2> {
     }
 
     #[inline]
-    fn candidate(&self, k: usize, foot: &SurfacePoint<2>, gap: f64) -> Candidate<2> {
+    fn candidate(&self, k: usize, law: LawId, foot: &SurfacePoint<2>, gap: f64) -> Candidate<2> {
         Candidate {
             id: ContactId::new(self.pair, k as u32),
-            law: self.law,
+            law,
             sides: [
                 Anchor { body: self.body, point: self.points[k] },
                 Anchor { body: self.surface, point: foot.material },
@@ -112,7 +133,7 @@ impl ContactDetector<2> for PointDetector<2> {
                 if let Some((foot, gap)) = pair.foot(at, place)
                     && gap <= margin
                 {
-                    out.push(pair.candidate(k, &foot, gap));
+                    out.push(pair.candidate(k, self.law(pair, k), &foot, gap));
                 }
             });
         }
@@ -141,15 +162,21 @@ impl ContactDetector<2> for PointDetector<2> {
     }
 
     fn wiring(&self) -> Vec<Wiring> {
-        let of = |pair: &PointPair<2>| Wiring {
+        let of = |pair: &PointPair<2>, law: LawId| Wiring {
             pair: pair.pair,
-            law: pair.law,
+            law,
             bodies: [pair.body, pair.surface],
             on_surface: true,
             contacts: pair.points.len(),
             not_finite: pair.points.iter().position(|point| !point.iter().all(|x| x.is_finite())),
         };
-        self.pairs.iter().map(of).collect()
+        let wired = |pair: &PointPair<2>| {
+            let mut laws: Vec<LawId> = (0..pair.points.len().max(1)).map(|k| self.law(pair, k)).collect();
+            laws.sort_unstable_by_key(|law| law.0);
+            laws.dedup();
+            laws.into_iter().map(|law| of(pair, law)).collect::<Vec<_>>()
+        };
+        self.pairs.iter().flat_map(wired).collect()
     }
 
     fn capacity(&self) -> usize {

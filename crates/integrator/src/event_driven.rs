@@ -19,7 +19,7 @@ use instant::Watch;
 use modes::{Mode, Pressing};
 use runge_kutta::RungeKutta;
 use smooth::{MASSES, Smooth};
-use teeter_detect::{Candidates, ContactId};
+use teeter_detect::{Candidate, Candidates, ContactId};
 
 /// The settings of [`EventDriven`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +55,10 @@ const USUAL_PHASES: usize = 100;
 
 /// Numbers that the state's memory holds of a contact: pair, point, mode, level.
 const REMEMBERED: usize = 4;
+
+/// After steps that it gave up one after the other, each has half as many events as the one before, up to so many times: where
+/// a beam chatters on its bearings, all of them are the located scheme's in the end.
+const LEAST_OF_EVENTS: u32 = 4;
 
 /// What it can't step.
 const SPRINGS: &str = "contacts with duration, whose forces event-driven doesn't integrate";
@@ -114,6 +118,10 @@ pub struct EventDriven {
     a_pressed: Vec<f64>,
     /// J̇v of those that don't part.
     biases: Vec<Vector<2>>,
+    /// Those that part, with their normal velocity (m/s) and the normal part of J̇v (m/s²).
+    parting: Vec<(Candidate<2>, f64, f64)>,
+    /// Those of them that would be back at once.
+    returning: Vec<ContactId>,
     ids: Vec<ContactId>,
     numbers: Vec<f64>,
     /// The step that the method would take next, s.
@@ -184,6 +192,8 @@ impl EventDriven {
             in_lowest_bounce: Vec::new(),
             a_pressed: Vec::new(),
             biases: Vec::new(),
+            parting: Vec::new(),
+            returning: Vec::new(),
             ids: Vec::new(),
             numbers: Vec::new(),
             h: 0.0,
@@ -236,6 +246,8 @@ impl Scheme<2> for EventDriven {
         self.found.reserve(contacts);
         self.in_lowest_bounce.reserve(contacts);
         self.biases.reserve(contacts);
+        self.parting.reserve(contacts);
+        self.returning.reserve(contacts);
         self.a_pressed.reserve(size.v);
         self.numbers.reserve(numbers);
         self.mean.resize(size.q, 0.0);
@@ -282,8 +294,8 @@ impl Scheme<2> for EventDriven {
             if located { contacts.iter().any(|own| own.id == contact.id) } else { contact.p[0] > 0.0 }
         })?;
         self.numbers.clear();
-        // Without them the next step begins anew.
-        self.numbers.extend(located.then_some(self.h));
+        // What isn't above 0 is no step: the next one begins anew.
+        self.numbers.push(if located { self.h } else { -f64::from(gave_up(state).saturating_add(1)) });
         for contact in self.smooth.contacts.iter().filter(|_| located) {
             let Pressing { id, mode, level, .. } = contact;
             self.numbers.extend([f64::from(id.pair()), f64::from(id.point()), mode.number(), *level]);
@@ -306,6 +318,7 @@ impl EventDriven {
     ) -> Result<bool, StepError> {
         work.factors(model, MASSES, &from.q, Keep::Pinned)?;
         (self.handled, self.substeps) = (from.t, 0);
+        let given_up = gave_up(from);
         let jumped = self.jump(model, from, work)?;
         if from.memory.active().len() > Self::MOST_CONTACTS {
             self.smooth.contacts.clear();
@@ -320,8 +333,8 @@ impl EventDriven {
             return self.give_up(model, from, span, work);
         }
         let (mut at, mut idle) = (from.t, 0);
-        let mut events = 0;
-        while events <= Self::MOST_EVENTS {
+        let (mut events, most) = (0, Self::MOST_EVENTS >> given_up.min(LEAST_OF_EVENTS));
+        while events <= most {
             let stop = self.go_on(model, from, span.end, work)?;
             idle = if from.t == at { idle + 1 } else { 0 };
             at = from.t;
@@ -480,6 +493,11 @@ impl EventDriven {
         from.t = end;
         Ok(())
     }
+}
+
+/// How many steps it has given up one after the other.
+fn gave_up(state: &State) -> u32 {
+    state.memory.all_numbers().first().map_or(0, |number| if *number < 0.0 { -number as u32 } else { 0 })
 }
 
 /// Just after time `t` (s): there loads and drives have the values from now on, whatever rounding of

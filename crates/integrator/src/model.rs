@@ -317,7 +317,7 @@ impl<const D: usize> ModelBuilder<D> {
     }
 
     fn check_wiring(&self, wiring: &[Wiring]) -> Result<(), ModelError> {
-        let mut seen: HashMap<u32, [BodyId; 2]> = HashMap::with_capacity(wiring.len());
+        let mut seen: HashMap<u32, ([BodyId; 2], LawId)> = HashMap::with_capacity(wiring.len());
         for &Wiring { pair, law, bodies: [first, second], on_surface, contacts, not_finite } in wiring {
             if law.0 as usize >= self.laws.len() {
                 return Err(ModelError::NoLaw { pair, law, laws: self.laws.len() });
@@ -331,11 +331,12 @@ impl<const D: usize> ModelBuilder<D> {
                 return Err(ModelError::Itself { pair, body: first });
             }
             let (part, number) = self.bodies[second.0 as usize];
-            // Corners on a body's surface and sides against its fibre are one pair.
-            if let Some([body, other]) = seen.insert(pair, [first, second])
-                && !(body == first && other != second && self.bodies[other.0 as usize].0 == part)
-            {
-                return Err(ModelError::PairTwice { pair });
+            // Corners on a body's surface and sides against its fibre are one pair, and so are points with different laws.
+            if let Some(([body, other], other_law)) = seen.insert(pair, ([first, second], law)) {
+                let another = if other == second { other_law != law } else { self.bodies[other.0 as usize].0 == part };
+                if body != first || !another {
+                    return Err(ModelError::PairTwice { pair });
+                }
             }
             if on_surface && !self.parts[part].system.has_surface(number) {
                 return Err(ModelError::NoSurface { pair, body: second });

@@ -37,9 +37,16 @@ mod escape;
 mod figure;
 mod legend;
 mod panel;
+#[cfg(feature = "pdf")]
+mod pdf;
 mod series;
 mod theme;
 mod ticks;
+
+/// The font of figures, as a TrueType file: a subset of Arimo, which has the widths of Arial and Helvetica, with Latin, Greek,
+/// superscripts and the signs of formulas. Its licence is the SIL Open Font License 1.1 (`assets/OFL.txt`).
+#[cfg(feature = "font")]
+pub const FONT: &[u8] = include_bytes!("../assets/Arimo-subset.ttf");
 
 pub use axis::Axis;
 pub use drawing::Drawing;
@@ -48,5 +55,7 @@ pub use escape::escaped;
 pub use figure::Figure;
 pub use legend::{LEGEND_WIDTH, Legend, legend_width, text_width};
 pub use panel::{Band, Panel};
+#[cfg(feature = "pdf")]
+pub use pdf::{PdfError, svg_to_pdf};
 pub use series::{Mark, Series};
 pub use theme::{Colour, Theme};

@@ -149,7 +149,7 @@ fn shared(digits: f64, round: f64) -> String {
 /// 10ⁿ, after which the text goes on at its own height.
 fn power_of_ten(power: i32) -> String {
     let exponent = power.to_string().replace('-', "\u{2212}");
-    format!("10<tspan dy=\"-4\" font-size=\"8\">{exponent}</tspan><tspan dy=\"4\">\u{200b}</tspan>")
+    format!("10<tspan dy=\"-4\" font-size=\"10\">{exponent}</tspan><tspan dy=\"4\">\u{200b}</tspan>")
 }
 
 /// About how wide a number is in the type of the labels, which is Helvetica of 11 units.
@@ -207,7 +207,7 @@ mod tests {
         let title = |ticks: &Ticks| ticks.reading.title("Energy <E> (J)").replace('\u{200b}', "");
         let small = Ticks::linear(0.0, 2.1e-6, 4);
         assert_eq!(labels(&small), ["0.0", "0.5", "1.0", "1.5", "2.0"]);
-        let power = |n: &str| format!("10<tspan dy=\"-4\" font-size=\"8\">{n}</tspan><tspan dy=\"4\"></tspan>");
+        let power = |n: &str| format!("10<tspan dy=\"-4\" font-size=\"10\">{n}</tspan><tspan dy=\"4\"></tspan>");
         assert_eq!(title(&small), format!("Energy &lt;E&gt; ({} J)", power("\u{2212}6")));
         assert_eq!(labels(&Ticks::linear(-2e-13, 4.2e-13, 3)), ["\u{2212}200", "0", "200", "400"]);
         let large = Ticks::linear(0.0, 6e5, 6);
@@ -237,7 +237,7 @@ mod tests {
         {
             let ticks = Ticks::linear(low, high, 5);
             let offset = ticks.reading.offset.clone().map_or(0.0, |(text, negative)| {
-                let text = text.replace("·10<tspan dy=\"-4\" font-size=\"8\">", "e").replace('\u{2212}', "-");
+                let text = text.replace("·10<tspan dy=\"-4\" font-size=\"10\">", "e").replace('\u{2212}', "-");
                 let value: f64 = text.split('<').next().unwrap().parse().unwrap();
                 if negative { -value } else { value }
             });

@@ -32,6 +32,7 @@
 
 mod corrections;
 mod cosmos;
+mod decimal;
 mod error;
 mod esm;
 mod format;
@@ -43,6 +44,7 @@ mod spectrum;
 mod table;
 mod units;
 
+pub use decimal::has_decimal_commas;
 pub use error::RecordError;
 pub use format::Format;
 pub use measures::{IntensityMeasure, Peak};

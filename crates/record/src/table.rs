@@ -1,5 +1,6 @@
 //! Plain tables: time and acceleration, or acceleration alone.
 
+use crate::decimal::has_decimal_commas;
 use crate::error::{RecordError, shown};
 use crate::record::{ReadSettings, Record};
 use crate::{LARGEST_ACCELERATION, MOST_VALUES, numbers, units};
@@ -58,6 +59,8 @@ struct TableLayout {
 pub(crate) fn read(text: &str, settings: &ReadSettings<'_>) -> Result<Record, RecordError> {
     let mut rows = TableRows { resolution: f64::INFINITY, ..TableRows::default() };
     let mut heading: Option<(usize, &str)> = None;
+    // With a step there may be one column.
+    let decimal = settings.step.is_some() && settings.component.is_none() && has_decimal_commas(text);
     let mut layout: Option<TableLayout> = None;
     for (index, text) in text.lines().enumerate() {
         let (line, text) = (index + 1, text.split('#').next().unwrap_or_default().trim());
@@ -70,7 +73,7 @@ pub(crate) fn read(text: &str, settings: &ReadSettings<'_>) -> Result<Record, Re
         }
         let layout = match layout {
             Some(layout) => layout,
-            None => *layout.insert(layout_of(line, text, heading, settings)?),
+            None => *layout.insert(layout_of(line, text, decimal, heading, settings)?),
         };
         rows.take(line, &cells(text, layout.separator), &layout)?;
     }
@@ -96,11 +99,12 @@ pub(crate) fn read(text: &str, settings: &ReadSettings<'_>) -> Result<Record, Re
 fn layout_of(
     line: usize,
     row: &str,
+    decimal: bool,
     heading: Option<(usize, &str)>,
     settings: &ReadSettings<'_>,
 ) -> Result<TableLayout, RecordError> {
     let separator = match row {
-        row if row.contains(';') => Separator::Semicolon,
+        row if row.contains(';') || decimal => Separator::Semicolon,
         row if row.contains(',') => Separator::Comma,
         _ => Separator::Blanks,
     };

@@ -41,6 +41,8 @@ pub use columns::{columns, unit as column_unit};
 pub use deflections::LargestDeflection;
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
 pub use made_energy::ENERGY_MADE;
+#[cfg(feature = "animation")]
+pub use page::{Animation, AnimationError, AnimationFormat, AnimationInfo, animate};
 pub use page::{
     HalfCycle, Joint, PageRecorder, STYLE, ThrustLine, VTK_SERIES, VtkRecorder, document, escaped, figures,
     half_cycles, record_figures, record_page, render, spectrum_periods, thrust_lines,

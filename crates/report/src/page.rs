@@ -4,6 +4,8 @@
 //! [`render`] makes the page, one file that loads nothing; [`figures`] makes the plots as SVG.
 
 mod accelerograms;
+#[cfg(feature = "animation")]
+mod animation;
 mod bands;
 mod chain;
 mod content;
@@ -20,6 +22,7 @@ mod orbit;
 mod outline;
 mod packed;
 mod panels;
+mod placed;
 mod recorder;
 mod rocking;
 mod scenery;
@@ -28,6 +31,8 @@ mod thrust;
 mod vtk;
 
 pub use accelerograms::{record_figures, record_page, spectrum_periods};
+#[cfg(feature = "animation")]
+pub use animation::{Animation, AnimationError, AnimationFormat, AnimationInfo, animate};
 pub use chain::{Joint, ThrustLine, thrust_lines};
 pub use figures::figures;
 pub(crate) use figures::is_pair_figure;

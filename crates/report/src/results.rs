@@ -378,6 +378,10 @@ fn is_there(path: &Path) -> bool {
 /// The pictures of a series, or the figures of single pairs, that belong to a file, by their names: of how many, no list of files
 /// can know.
 fn members_beside(series: &Path) -> Vec<PathBuf> {
+    // The figure as PDF, of which the run that replaces it knows nothing.
+    let pdf = series.with_extension("pdf");
+    let is_figure = series.extension().is_some_and(|ending| ending == "svg");
+    let pdf = Some(pdf).filter(|pdf| is_figure && is_there(pdf));
     let is_member: &dyn Fn(&str) -> bool = if series.ends_with(VTK_SERIES) {
         &is_vtk_picture
     } else if series.ends_with("figures/contact_forces.svg") {
@@ -385,12 +389,13 @@ fn members_beside(series: &Path) -> Vec<PathBuf> {
     } else if series.ends_with("figures/slip.svg") {
         &|name| is_pair_figure("slip", name)
     } else {
-        return Vec::new();
+        return pdf.into_iter().collect();
     };
     let entries = series.parent().and_then(|folder| fs::read_dir(folder).ok());
     let names = entries.into_iter().flatten().flatten().map(|entry| entry.path());
     let mut pictures: Vec<PathBuf> =
         names.filter(|path| path.file_name().and_then(|name| name.to_str()).is_some_and(is_member)).collect();
+    pictures.extend(pdf);
     pictures.sort();
     pictures
 }
@@ -455,9 +460,23 @@ mod tests {
         for inner in ["figures", "vtk"] {
             fs::create_dir_all(folder.join(inner)).unwrap();
         }
-        let ours = ["summary.json", "figures/phase_x.svg", "vtk/picture-0000.vtu", "vtk/picture-12345.vtu", VTK_SERIES];
-        let foreign =
-            ["figures/mine.svg", "notes.txt", "vtk/picture-1.vtu", "vtk/picture-000a.vtu", "vtk/my-picture-0001.vtu"];
+        let ours = [
+            "summary.json",
+            "figures/phase_x.svg",
+            "figures/phase_x.pdf",
+            "figures/slip-a-on-b.pdf",
+            "vtk/picture-0000.vtu",
+            "vtk/picture-12345.vtu",
+            VTK_SERIES,
+        ];
+        let foreign = [
+            "figures/mine.svg",
+            "figures/mine.pdf",
+            "notes.txt",
+            "vtk/picture-1.vtu",
+            "vtk/picture-000a.vtu",
+            "vtk/my-picture-0001.vtu",
+        ];
         for file in ours.iter().chain(&foreign) {
             fs::write(folder.join(file), "x").unwrap();
         }

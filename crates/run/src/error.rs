@@ -101,15 +101,20 @@ pub enum PrepareError {
     /// The file of the running program, whose hash identifies it in checkpoints, can't be read.
     #[error("the program's own file can't be read: {0}")]
     Program(#[source] io::Error),
-    /// The file for the state before the first unsolved step is a folder.
-    #[error("{} is a folder, not a file for a state", .0.display())]
-    DumpIsFolder(PathBuf),
-    /// That file already exists.
+    /// The file for a state or an animation is a folder.
+    #[error("{} is a folder, not a file for {} {what}", path.display(), if *what == "animation" { "an" } else { "a" })]
+    FileIsFolder {
+        /// The path.
+        path: PathBuf,
+        /// What the file is for: `state` or `animation`.
+        what: &'static str,
+    },
+    /// The file for a state or an animation already exists.
     #[error("{} already exists", .0.display())]
-    DumpExists(PathBuf),
+    FileExists(PathBuf),
     /// The folder of that file doesn't exist.
     #[error("there is no folder {}", .0.display())]
-    NoDumpFolder(PathBuf),
+    NoFolder(PathBuf),
 }
 
 fn ended_how(ended: EndedWord) -> String {
@@ -140,4 +145,8 @@ pub enum RunError {
     /// The summary can't be written as JSON: a number in it is not finite.
     #[error(transparent)]
     Summary(serde_json::Error),
+    /// There is no animation; all other results are written.
+    #[cfg(feature = "animation")]
+    #[error(transparent)]
+    Animation(teeter_report::AnimationError),
 }

@@ -11,7 +11,7 @@ pub enum ExistingResults {
     /// The run is refused.
     #[default]
     Refuse,
-    /// They are replaced, including saved contact problems and the dumped state.
+    /// They are replaced, including saved contact problems, the dumped state and the animation.
     Replace,
     /// The run continues from their checkpoint; without one it starts at the beginning.
     Resume,
@@ -33,6 +33,8 @@ pub struct RunJob {
     pub(crate) horizon: bool,
     pub(crate) report: bool,
     pub(crate) vtk: bool,
+    #[cfg(feature = "animation")]
+    pub(crate) animation: Option<(PathBuf, teeter_report::Animation)>,
     extent: Extent,
     pub(crate) program: Option<[u8; 32]>,
 }
@@ -52,6 +54,8 @@ impl RunJob {
             horizon: false,
             report: true,
             vtk: false,
+            #[cfg(feature = "animation")]
+            animation: None,
             extent: Extent::default(),
             program: None,
         }
@@ -61,6 +65,13 @@ impl RunJob {
     /// them.
     pub fn with_vtk(mut self) -> Self {
         self.vtk = true;
+        self
+    }
+
+    /// Also writes the motion as an animation to the file `path`. The default is to write none.
+    #[cfg(feature = "animation")]
+    pub fn animate(mut self, path: impl Into<PathBuf>, animation: teeter_report::Animation) -> Self {
+        self.animation = Some((path.into(), animation));
         self
     }
 
@@ -153,6 +164,14 @@ impl RunJob {
     #[must_use]
     pub fn results_folder(&self) -> PathBuf {
         self.folder.clone().unwrap_or_else(|| Path::new("runs").join(self.scene.stem()))
+    }
+
+    /// The file for the animation, if there is to be one.
+    pub(crate) fn animation_file(&self) -> Option<&Path> {
+        #[cfg(feature = "animation")]
+        return self.animation.as_ref().map(|(path, _)| path.as_path());
+        #[cfg(not(feature = "animation"))]
+        None
     }
 
     /// How much of the scene is modelled, considering the start.

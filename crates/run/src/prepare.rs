@@ -1,7 +1,7 @@
 //! Preparation of a run, before anything is written.
 
 use crate::start::{self, RunStart};
-use crate::{LoadError, PrepareError, RunJob};
+use crate::{ExistingResults, LoadError, PrepareError, RunJob};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use teeter_integrator::State;
@@ -55,7 +55,7 @@ impl RunJob {
             simulation.state = state_from(path, &resolved.scene, &simulation)?;
         }
         let identity = start::identity(&self, &resolved)?;
-        self.check_dump()?;
+        self.check_files(&folder)?;
         let scene = self.scene_as_run(&folder, &resolved);
         let (start, checkpoint) = RunStart::find(&self, &folder, identity.as_ref(), &scene)?;
         let former = start.former(self.existing);
@@ -80,23 +80,34 @@ impl RunJob {
         let mut inputs = self.scene.inputs(resolved);
         inputs.extend(self.from.clone());
         Results::spares(&FILES, folder, &inputs)?;
-        if let Some(dump) = self.dump.as_ref().and_then(|path| path.to_str()) {
-            Results::spares(&[dump], Path::new(""), &inputs)?;
+        for path in [self.dump.as_deref(), self.animation_file()].into_iter().flatten().filter_map(Path::to_str) {
+            Results::spares(&[path], Path::new(""), &inputs)?;
         }
         Ok(())
     }
 
-    /// Refuses an existing file for the state, or one whose folder doesn't exist.
-    fn check_dump(&self) -> Result<(), PrepareError> {
-        let Some(path) = &self.dump else { return Ok(()) };
-        if path.is_dir() {
-            return Err(PrepareError::DumpIsFolder(path.clone()));
+    /// Refuses files for the state and the animation that exist, or whose folder doesn't: an animation may stand in that of
+    /// the results.
+    fn check_files(&self, results: &Path) -> Result<(), PrepareError> {
+        for (path, what) in [(self.dump.as_deref(), "state"), (self.animation_file(), "animation")] {
+            let Some(path) = path else { continue };
+            if path.is_dir() {
+                return Err(PrepareError::FileIsFolder { path: path.to_owned(), what });
+            }
+            let replaces = match self.existing {
+                ExistingResults::Refuse => false,
+                ExistingResults::Replace | ExistingResults::Resume => true,
+            };
+            if path.exists() && !replaces {
+                return Err(PrepareError::FileExists(path.to_owned()));
+            }
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            let is_made = what == "animation" && folder == results;
+            if !(folder.is_dir() || is_made) {
+                return Err(PrepareError::NoFolder(folder.to_owned()));
+            }
         }
-        if path.exists() && self.existing == crate::ExistingResults::Refuse {
-            return Err(PrepareError::DumpExists(path.clone()));
-        }
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        if folder.is_dir() { Ok(()) } else { Err(PrepareError::NoDumpFolder(folder.to_owned())) }
+        Ok(())
     }
 }
 

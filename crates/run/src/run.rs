@@ -24,6 +24,9 @@ pub struct FinishedRun {
     pub exported: Option<Exported>,
     /// The file for the state before the first unsolved step; `None` if it was not requested.
     pub dump: Option<StateDump>,
+    /// The animation; `None` if it was not requested, or there was no room for it.
+    #[cfg(feature = "animation")]
+    pub animation: Option<teeter_report::AnimationInfo>,
 }
 
 /// Contact problems saved by a run.
@@ -98,7 +101,9 @@ impl Prepared {
         }
         let exporter = recorded.exporter.as_ref().map(Exporter::written);
         let (scene, state) = (&self.resolved.scene, &self.simulation.state);
-        let summary = write(&results, recorded, scene, &layout, state, &scene_as_run, self.job.report)?;
+        let summary = write(&results, &recorded, scene, &layout, state, &scene_as_run, self.job.report)?;
+        #[cfg(feature = "animation")]
+        let animation = self.animate(&recorded)?;
         let unsolved = summary.contact.unconverged_steps > 0;
         Ok(FinishedRun {
             exported: exporter.zip(self.job.export).map(|(count, (folder, _))| Exported { folder, count }),
@@ -108,7 +113,21 @@ impl Prepared {
                 .map(|path| if unsolved { StateDump::Written(path) } else { StateDump::NotNeeded(path) }),
             folder: self.folder,
             summary,
+            #[cfg(feature = "animation")]
+            animation,
         })
+    }
+
+    /// Writes the animation, if there is to be one.
+    #[cfg(feature = "animation")]
+    fn animate(&self, recorded: &RecordedRun) -> Result<Option<teeter_report::AnimationInfo>, RunError> {
+        let Some((path, animation)) = &self.job.animation else { return Ok(None) };
+        let (file, info) = teeter_report::animate(&recorded.page, animation).map_err(RunError::Animation)?;
+        match teeter_report::write_whole(path, &file) {
+            Ok(()) => Ok(Some(info)),
+            Err(error) if recorded.ended == EndedWord::DiskFull && error.is_disk_full() => Ok(None),
+            Err(error) => Err(RunError::Write(error)),
+        }
     }
 
     /// Locks the folder for contact problems, if they are to be saved.
@@ -191,7 +210,7 @@ impl Prepared {
 /// Writes the files at the end of a run, the summary last.
 fn write(
     results: &Results,
-    recorded: RecordedRun,
+    recorded: &RecordedRun,
     scene: &Scene,
     layout: &Layout,
     state: &State,
@@ -199,8 +218,9 @@ fn write(
     report: bool,
 ) -> Result<Summary, RunError> {
     let RecordedRun { record, page, ended, seconds, .. } = recorded;
-    let summary = Summary::new(scene, layout, state, &record, ended, seconds);
-    let written = write_files(results, &record, scene, layout, &page, &summary, report.then_some(scene_as_run));
+    let (ended, seconds) = (*ended, *seconds);
+    let summary = Summary::new(scene, layout, state, record, ended, seconds);
+    let written = write_files(results, record, scene, layout, page, &summary, report.then_some(scene_as_run));
     match written {
         // There is no room for these either; the summary still has the reason.
         Err(RunError::Write(error)) if ended == EndedWord::DiskFull && error.is_disk_full() => {}

@@ -213,13 +213,13 @@ fn bad_input_is_found_before_anything_is_written() {
     let error = prepare_error(job().from_state(place.at("nowhere.bin")));
     assert!(matches!(error, PrepareError::State(_)), "{error}");
     let error = prepare_error(job().dump_unconverged(place.at("nowhere/state.bin")));
-    assert!(matches!(error, PrepareError::NoDumpFolder(_)), "{error}");
+    assert!(matches!(error, PrepareError::NoFolder(_)), "{error}");
     assert!(!place.0.exists(), "nothing is written");
 
     // Neither is anything changed that is there.
     std::fs::create_dir_all(place.at("out")).unwrap();
     let error = prepare_error(job().dump_unconverged(place.at("out")));
-    assert!(matches!(error, PrepareError::DumpIsFolder(_)), "{error}");
+    assert!(matches!(error, PrepareError::FileIsFolder { .. }), "{error}");
     std::fs::write(place.at("out/trajectory.csv"), "t\n").unwrap();
     let error = prepare_error(job().export_problems(place.at("problems"), ExportWhen::Hard));
     assert!(matches!(error, PrepareError::Folder(_)), "{error}");

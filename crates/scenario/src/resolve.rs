@@ -265,6 +265,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
         let names = self.block_names.clone();
         let blocks: Vec<_> = names.iter().map(|name| self.block(name, &beams, &contacts, &joined, &signals)).collect();
         self.check_support_cycles(&blocks);
+        self.feet_are_sharp(&ground, &contacts, &blocks);
         self.check_contacts_can_move(&blocks, &contacts);
         self.check_crowd(crowd.as_ref(), &blocks, &beams);
         self.check_static_starts_beside_profile(&ground, &beams, &blocks, &contacts);

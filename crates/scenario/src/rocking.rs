@@ -56,7 +56,7 @@ fn is_housners(scene: &Scene, contact: &ContactScene) -> bool {
     let law = &contact.law;
     let compliant = matches!(law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. });
     let bounces = law.restitution > 0.0 || compliant;
-    let slides = law.friction < block.width / block.height;
+    let slides = contact.friction_of_feet()[0] < block.width / block.height;
     level && !(bounces || slides || scene.is_driven(contact))
 }
 

@@ -467,6 +467,8 @@ pub struct ContactScene {
     pub surface: SupportingBody,
     /// Friction and the law along the normal.
     pub law: teeter_integrator::PairLaw,
+    /// Friction at the left and at the right [foot](BlockScene::feet), where it is not that of the law.
+    pub feet_friction: [Option<f64>; 2],
     /// Whether contact frames follow the deflection of the surface.
     pub kinematics: teeter_detect::Kinematics,
     /// The side of a beam that the block touches; upper for other surfaces.
@@ -477,6 +479,22 @@ pub struct ContactScene {
 }
 
 impl ContactScene {
+    /// The law of a corner of the block, which is that of the contact but for a foot with a friction of its own.
+    #[must_use]
+    pub fn law_at(&self, block: &BlockScene, corner: usize) -> teeter_integrator::PairLaw {
+        let foot = block.feet().iter().position(|foot| *foot == corner);
+        let mut law = self.law;
+        law.friction = foot.and_then(|foot| self.feet_friction[foot]).unwrap_or(law.friction);
+        law
+    }
+
+    /// The least and the largest friction of the feet.
+    #[must_use]
+    pub fn friction_of_feet(&self) -> [f64; 2] {
+        let [left, right] = self.feet_friction.map(|own| own.unwrap_or(self.law.friction));
+        [left.min(right), left.max(right)]
+    }
+
     /// The other block of a contact between two.
     #[must_use]
     pub fn other_block(&self) -> Option<usize> {

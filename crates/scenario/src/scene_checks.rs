@@ -217,7 +217,8 @@ fn incline_under(block: &BlockScene, scene: &Scene) -> f64 {
 /// Notes a block on an incline that friction doesn't hold.
 fn slides(block: &BlockScene, incline: f64, scene: &Scene, document: &Document) -> Option<Diagnostic> {
     let Placement::On { contact, .. } = block.placement else { return None };
-    let (slope, friction) = (incline.tan().abs(), scene.contacts[contact].law.friction);
+    // With feet of different friction, what is too steep for both.
+    let (slope, [_, friction]) = (incline.tan().abs(), scene.contacts[contact].friction_of_feet());
     if slope <= friction {
         return None;
     }

@@ -303,13 +303,12 @@ fn turns(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let spins = scene.blocks.iter().map(|block| far(format!("block.{}.spin", block.name), block.spin));
     let driven = |(path, motion): (String, &MotionScene)| {
         let axis = motion.0[2].as_ref()?;
-        let swing = |history: &History| history.swings().map_or(0.0, |(period, _)| std::f64::consts::TAU / period);
         let sum = |of: &dyn Fn(&History) -> f64| -> f64 {
             axis.history.terms().map(|(factor, term)| factor.abs() * of(term)).sum()
         };
         let (key, rate) = match axis.given {
             Given::Velocity => ("angular_velocity", sum(&most)),
-            Given::Displacement => ("angle", sum(&swing)),
+            Given::Displacement => ("angle", sum(&fastest)),
             Given::Acceleration => return None,
         };
         far(format!("{path}.{key}"), axis.amplitude * rate)
@@ -327,6 +326,25 @@ fn most(history: &History) -> f64 {
         History::Product(product) => product.factors().iter().map(bound).fold(product.scale().abs(), |a, b| a * b),
         History::Formula(_) | History::Chirp(_) => 1.0,
         History::Sum(_) => bound(history),
+    }
+}
+
+/// A bound of the rates of a history by its oscillations, 1/s: of a product, that of each factor times the values of the others.
+fn fastest(history: &History) -> f64 {
+    let sum = |history: &History, of: fn(&History) -> f64| -> f64 {
+        history.terms().map(|(factor, term)| factor.abs() * of(term)).sum()
+    };
+    match history {
+        History::Product(product) => {
+            let factors = || product.factors().iter().enumerate();
+            let of = |(k, factor): (usize, &History)| {
+                let others = factors().filter(|(other, _)| *other != k).map(|(_, other)| sum(other, most));
+                sum(factor, fastest) * others.product::<f64>()
+            };
+            product.scale().abs() * factors().map(of).sum::<f64>()
+        }
+        History::Sum(_) => sum(history, fastest),
+        _ => history.swings().map_or(0.0, |(period, _)| std::f64::consts::TAU / period),
     }
 }
 

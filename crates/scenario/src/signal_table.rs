@@ -36,7 +36,12 @@ pub(crate) fn of_columns(
 /// # Errors
 /// What is wrong, with the line.
 pub(crate) fn of_values(bytes: &[u8], start: f64, step: f64) -> Result<Table, String> {
-    let NumberColumns { columns, lines } = columns(bytes, 1..=1, "one, values, with step", &[Dimension::NONE])?;
+    let decimal = std::str::from_utf8(bytes).ok().filter(|text| teeter_record::has_decimal_commas(text));
+    // The heading of one column has no comma that matters.
+    let points = decimal.map(|text| text.replace(',', "."));
+    let bytes = points.as_deref().map_or(bytes, str::as_bytes);
+    let expected = "one, values, with step (whose decimals have points if what stands before the commas ascends)";
+    let NumberColumns { columns, lines } = columns(bytes, 1..=1, expected, &[Dimension::NONE])?;
     let values = columns.into_iter().next().unwrap_or_default();
     let times = (0..values.len()).map(|k| start + step * k as f64).collect();
     made(times, values, &lines)

@@ -16,8 +16,8 @@ use std::sync::atomic::AtomicBool;
 use teeter_beam::{BeamError, ModalError};
 use teeter_contact::ContactSolver;
 use teeter_detect::{
-    BodyId, ContactDetector, Groups, LawId, OnSide, PointDetector, PointPair, ProfilePair, Shape, ShapeDetector,
-    ShapeError, ShapePair, SidePair, SurfacePair, WiringError,
+    BodyId, ContactDetector, ContactId, Groups, LawId, OnSide, PointDetector, PointPair, ProfilePair, Shape,
+    ShapeDetector, ShapeError, ShapePair, SidePair, SurfacePair, WiringError,
 };
 use teeter_integrator::{
     Account, BeamFace, Block, Ended, EventDriven, EventDrivenSettings, GeneralizedAlpha, GeneralizedAlphaSettings,
@@ -471,6 +471,12 @@ fn assemble(
             pairs.surfaces.push(SurfacePair { pair, law, body, surface, kinematics });
         } else {
             let points = block.corners[..points].to_vec();
+            for foot in (0..points.len()).filter(|_| contact.feet_friction != [None; 2]) {
+                let own = contact.law_at(&scene.blocks[contact.block], foot);
+                if own != contact.law {
+                    pairs.laws.push((ContactId::new(pair, foot as u32), parts.law(own)));
+                }
+            }
             pairs.points.push(PointPair { pair, law, points, body, surface, kinematics });
         }
     }
@@ -511,6 +517,8 @@ fn groups(crowd: &Crowd, laws: &[LawId], blocks: &PartPlace) -> Result<Groups, W
 pub(crate) struct Pairs {
     /// Sharp blocks on surfaces.
     pub(crate) points: Vec<PointPair<2>>,
+    /// Corners of these with laws of their own.
+    pub(crate) laws: Vec<(ContactId, LawId)>,
     /// Round ones.
     pub(crate) surfaces: Vec<SurfacePair>,
     /// Blocks and blocks.
@@ -528,7 +536,7 @@ pub(crate) fn detector<'a>(
     on_profile: OnProfile<'_>,
     shapes: impl Iterator<Item = (BodyId, &'a [Shape])>,
 ) -> Result<Box<dyn ContactDetector<2>>, BuildError> {
-    let points = PointDetector::new(pairs.points);
+    let points = PointDetector::new(pairs.points).with_laws(pairs.laws);
     let on_profile = on_profile.filter(|(_, pairs)| !pairs.is_empty());
     let none_listed = pairs.shapes.is_empty() && pairs.surfaces.is_empty() && pairs.sides.is_empty();
     if none_listed && on_profile.is_none() && pairs.groups.is_none() {

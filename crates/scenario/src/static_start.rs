@@ -385,7 +385,17 @@ impl StaticModel {
                 Some(foot) => {
                     vec![(HELD_FRICTION, vec![foot]), (0.0, (0..corners.len()).filter(|&k| k != foot).collect())]
                 }
-                None => vec![(contact.law.friction, (0..corners.len()).collect())],
+                None => {
+                    let friction = |k: &usize| contact.law_at(&scene.blocks[contact.block], *k).friction;
+                    let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
+                    for k in 0..corners.len() {
+                        match groups.iter_mut().find(|(of, _)| *of == friction(&k)) {
+                            Some((_, numbers)) => numbers.push(k),
+                            None => groups.push((friction(&k), vec![k])),
+                        }
+                    }
+                    groups
+                }
             };
             for (friction, numbers) in groups {
                 pairs.points.push(PointPair {
@@ -457,7 +467,7 @@ fn refusal(scene: &Scene, beam: &str, pairs: &[EquilibriumPair], error: Equilibr
     match error {
         EquilibriumError::Leaves { contact, lifted, slid, .. } => {
             let pair = pairs.get(contact.pair() as usize).map(|pair| &scene.contacts[pair.contact]);
-            let (block, friction) = pair.map_or((0, 0.0), |pair| (pair.block, pair.law.friction));
+            let (block, friction) = pair.map_or((0, 0.0), |pair| (pair.block, pair.friction_of_feet()[1]));
             let of = &scene.blocks[block];
             let forces = scene.forces.iter().filter(|force| force.block == block);
             let pushed: f64 = forces.map(|force| force.force[1] * force.history.signal().value(0.0)).sum();

@@ -79,7 +79,8 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         }
     }
     let of_crowd = scene.crowd.iter().flat_map(Crowd::contacts).map(|contact| (&contact.name, &contact.law));
-    let contacts = scene.contacts.iter().map(|contact| (&contact.name, &contact.law)).chain(of_crowd);
+    let smooth = scene.contacts.iter().filter(|contact| contact.feet_friction.iter().flatten().all(|own| *own == 0.0));
+    let contacts = smooth.map(|contact| (&contact.name, &contact.law)).chain(of_crowd);
     for (name, law) in contacts.filter(|(_, law)| law.friction == 0.0).take(LISTED) {
         let path = format!("contact.{name}.tangential_restitution");
         if law.tangential_restitution > 0.0 {

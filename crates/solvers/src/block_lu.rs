@@ -38,14 +38,28 @@ pub(crate) struct BlockLu<const D: usize> {
     /// For each step j, the earlier columns k with an entry in row j: (k, index of j in `below`).
     reach_start: Vec<usize>,
     reach: Vec<(usize, usize)>,
-    lower: Vec<Block<D>>,
-    upper: Vec<Block<D>>,
+    /// Entry (row, k) of L and entry (k, row) of U for each entry of `below`: together, as they are always used
+    /// together.
+    factors: Vec<Mirrored<D>>,
     pivot: Vec<Block<D>>,
     pivot_inverse: Vec<Block<D>>,
     active: Vec<bool>,
     /// The position of a row in the current column.
     map: Vec<usize>,
     rhs: Vec<Vector<D>>,
+}
+
+/// An entry of L below the diagonal, and the one of U at its mirror image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Mirrored<const D: usize> {
+    lower: Block<D>,
+    upper: Block<D>,
+}
+
+impl<const D: usize> Mirrored<D> {
+    fn zeros() -> Self {
+        Self { lower: Block::zeros(), upper: Block::zeros() }
+    }
 }
 
 /// A clone starts empty: analysis and factors belong to the problems solved.
@@ -70,8 +84,7 @@ impl<const D: usize> BlockLu<D> {
         reserve(&mut self.known_columns, blocks);
         reserve(&mut self.below, filled);
         reserve(&mut self.reach, filled);
-        reserve(&mut self.lower, filled);
-        reserve(&mut self.upper, filled);
+        reserve(&mut self.factors, filled);
         reserve(&mut self.pivot, contacts);
         reserve(&mut self.pivot_inverse, contacts);
         reserve(&mut self.active, contacts);
@@ -94,8 +107,7 @@ impl<const D: usize> BlockLu<D> {
         self.ordering.order(&mut self.order, &mut self.place);
         self.eliminate_symbolically();
         let filled = self.below.len();
-        refill(&mut self.lower, filled, Block::zeros());
-        refill(&mut self.upper, filled, Block::zeros());
+        refill(&mut self.factors, filled, Mirrored::zeros());
         refill(&mut self.pivot, n, Block::zeros());
         refill(&mut self.pivot_inverse, n, Block::zeros());
         refill(&mut self.active, n, false);
@@ -184,39 +196,38 @@ impl<const D: usize> BlockLu<D> {
         for k in 0..n {
             self.active[k] = active(self.order[k]);
         }
-        self.lower.fill(Block::zeros());
-        self.upper.fill(Block::zeros());
+        self.factors.fill(Mirrored::zeros());
         self.scatter(h, block);
         for j in 0..n {
             if !self.active[j] {
                 continue;
             }
-            let own = self.start[j]..self.start[j + 1];
-            for at in own.clone() {
-                self.map[self.below[at]] = at;
+            let (first, end) = (self.start[j], self.start[j + 1]);
+            for (at, &row) in self.below[first..end].iter().enumerate() {
+                self.map[row] = at;
             }
             let mut pivot = self.pivot[j];
+            // Columns before j are finished.
+            let (finished, own) = self.factors.split_at_mut(first);
+            let own = &mut own[..end - first];
             for &(k, at) in &self.reach[self.reach_start[j]..self.reach_start[j + 1]] {
                 if !self.active[k] {
                     continue;
                 }
-                let (l, u) = (self.lower[at], self.upper[at]);
+                let Mirrored { lower: l, upper: u } = finished[at];
                 pivot -= l * u;
-                for t in at + 1..self.start[k + 1] {
-                    let row = self.below[t];
-                    if !self.active[row] {
-                        continue;
-                    }
-                    let target = self.map[row];
-                    let (l_t, u_t) = (self.lower[t], self.upper[t]);
-                    self.lower[target] -= l_t * u;
-                    self.upper[target] -= l * u_t;
+                let rest = at + 1..self.start[k + 1];
+                for (row, entry) in self.below[rest.clone()].iter().zip(&finished[rest]) {
+                    // Entries of contacts that are left out go to places that nobody reads.
+                    let target = &mut own[self.map[*row]];
+                    target.lower -= entry.lower * u;
+                    target.upper -= l * entry.upper;
                 }
             }
             let Some(inverse) = invert(&pivot) else { return false };
             self.pivot_inverse[j] = inverse;
-            for at in own {
-                self.lower[at] *= inverse;
+            for entry in own {
+                entry.lower *= inverse;
             }
         }
         true
@@ -242,12 +253,12 @@ impl<const D: usize> BlockLu<D> {
                 if m == k {
                     self.pivot[k] = block(i, t);
                 } else if m > k {
-                    self.upper[self.map[m]] = block(i, t);
+                    self.factors[self.map[m]].upper = block(i, t);
                 } else {
                     // Row k of column m of L, found by bisection in its structure.
                     let column = &self.below[self.start[m]..self.start[m + 1]];
                     if let Ok(at) = column.binary_search(&k) {
-                        self.lower[self.start[m] + at] = block(i, t);
+                        self.factors[self.start[m] + at].lower = block(i, t);
                     }
                 }
             }
@@ -264,7 +275,7 @@ impl<const D: usize> BlockLu<D> {
             if self.active[k] {
                 let b = self.rhs[k];
                 for at in self.start[k]..self.start[k + 1] {
-                    self.rhs[self.below[at]] -= self.lower[at] * b;
+                    self.rhs[self.below[at]] -= self.factors[at].lower * b;
                 }
             }
         }
@@ -274,7 +285,7 @@ impl<const D: usize> BlockLu<D> {
                 for at in self.start[k]..self.start[k + 1] {
                     let j = self.below[at];
                     if self.active[j] {
-                        b -= self.upper[at] * self.rhs[j];
+                        b -= self.factors[at].upper * self.rhs[j];
                     }
                 }
                 self.rhs[k] = self.pivot_inverse[k] * b;

@@ -12,7 +12,7 @@
 //! 6. **Pivots from a near-solution** (`crossover.rs`), if there are many contacts in the plane: a
 //!    crowd. If they fail, **a short central path, alternating directions** with Newton steps from
 //!    where they end, **and a longer path**, with pivots again from where one of these has come nearer.
-//!    A large crowd with a loose tolerance begins with the path; one with a small tolerance ends here.
+//!    A large crowd with a loose tolerance has pivots last only; one with a small tolerance ends here.
 //! 7. **Pivots** ([`Lemke`](crate::Lemke)), in the plane for up to some hundred contacts. If blocks
 //!    lean on each other, the contact forces may be nearly undetermined, and methods that follow
 //!    the residual stop at about 1e-10; pivoting is exact.
@@ -313,17 +313,16 @@ impl<const D: usize> Chain<D> {
         let within = |left: u32, most: u32| stop.with_max_iterations(left.min(most));
         // The residual from which pivots are worth a try.
         let mut near = NEAR;
+        // The work of a pivot grows with the contacts faster than that of a step of the path, which is all that a
+        // loose tolerance needs: of a wall of 500 bricks three tries took as long as all else of 1000 steps.
+        let late = suits_gradients(problem, stop);
         let mut cross = |p: &mut [Vector<D>], progress: &mut Progress| {
-            if !progress.over(stop) && progress.best.residual.global < near {
+            if !late && !progress.over(stop) && progress.best.residual.global < near {
                 near = NEARER * progress.best.residual.global;
                 progress.add(crossover.solve(problem, &within(progress.left(stop), TRIED), p));
             }
         };
-        // The work of a pivot grows with the contacts faster than that of a step of the path, which is all that a
-        // loose tolerance needs: of a wall of 500 bricks two tries took as long as all else of 1000 steps.
-        if !suits_gradients(problem, stop) {
-            cross(p, progress);
-        }
+        cross(p, progress);
         // All return the best point that they meet, the start among them.
         if !progress.over(stop) {
             progress.add(self.smoothing.solve(problem, &within(progress.left(stop), SHORT_PATH), p));

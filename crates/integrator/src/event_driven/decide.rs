@@ -2,7 +2,8 @@
 
 use super::instant::Kind;
 use super::modes::{Mode, Pressing};
-use super::{EventDriven, LOWEST_BOUNCE, after, smooth::MASSES, still};
+use super::smooth::{MASSES, Smooth};
+use super::{EventDriven, LOWEST_BOUNCE, after, still};
 use crate::{
     ContactStage, Memory, Mismatch, Model, Over, Responses, Rule, State, StepError, Vector, WarmStart, Workspace,
 };
@@ -104,7 +105,15 @@ impl EventDriven {
             self.located.strike_by(model, from, &self.ids, by_forces, &self.in_lowest_bounce, work)?;
             self.smooth.accelerate_freely(model, t, &from.q, &from.v, work)?;
         }
-        self.find_who_presses(model, from, work)
+        self.returning.clear();
+        // Each round holds one contact more, so it ends.
+        loop {
+            let found = self.find_who_presses(model, from, work)?;
+            if !found || !self.find_who_returns(model, from)? {
+                return Ok(found);
+            }
+            self.smooth.accelerate_freely(model, t, &from.q, &from.v, work)?;
+        }
     }
 
     /// The contacts that press and the candidates, which are as near.
@@ -145,6 +154,24 @@ impl EventDriven {
         Ok(approaches.then_some(fastest))
     }
 
+    /// Adds the contacts that part, but that those which press now would close again from less than the lowest bounce, to
+    /// those that don't: two bodies that fall alike, one of which another foot of it pushes. Whether there are any.
+    fn find_who_returns(&mut self, model: &Model<2>, from: &State) -> Result<bool, StepError> {
+        let height = LOWEST_BOUNCE * self.located.tolerance(&from.q);
+        let Smooth { one, a, contacts, .. } = &mut self.smooth;
+        let before = self.returning.len();
+        for (candidate, u, bias) in self.parting.iter().filter(|_| !contacts.is_empty()) {
+            one.clear();
+            if one.add(model, &from.q, candidate, &WarmStart::default(), &Memory::default())? {
+                let acceleration = one.velocity(0, a)?[0] + bias;
+                if *u <= velocity_after(height, -acceleration) {
+                    self.returning.push(candidate.id);
+                }
+            }
+        }
+        Ok(self.returning.len() > before)
+    }
+
     /// Solves the law over accelerations for the contacts that touch and don't part.
     fn find_who_presses(
         &mut self,
@@ -159,6 +186,7 @@ impl EventDriven {
         smooth.stage.clear();
         self.found.clear();
         self.biases.clear();
+        self.parting.clear();
         for candidate in &self.touching {
             let row = smooth.stage.len();
             if !smooth.stage.add(model, &from.q, candidate, &WarmStart::default(), &Memory::default())? {
@@ -170,7 +198,9 @@ impl EventDriven {
             let bias = smooth.turning(model, &from.q, work, row, candidate)?;
             let free = towards(&smooth.stage, row, [&smooth.a, &self.a_pressed])? + bias[0];
             // What would come back from less than the lowest bounce stays.
-            if u[0] > slow.max(velocity_after(height, -free)) {
+            let returns = self.returning.contains(&candidate.id);
+            if !returns && u[0] > slow.max(velocity_after(height, -free)) {
+                self.parting.push((*candidate, u[0], bias[0]));
                 smooth.stage.drop_last();
                 continue;
             }

@@ -59,6 +59,14 @@ const STEP_LEFT: f64 = 1e-9;
 /// A contact that pulls by this part of its scale within a step has opened in it; one whose friction is over its limit by as much slides.
 const PULLED: f64 = 1e-3;
 
+/// A phase begins with a step of at least so many of the [shortest](shortest) ones.
+const SHORT: f64 = 256.0;
+
+/// The shortest step at time `t` (s) that rounding leaves in a scheme's step of `dt` (s), s.
+fn shortest(t: f64, dt: f64) -> f64 {
+    4.0 * f64::EPSILON * t.abs().max(dt)
+}
+
 impl EventDriven {
     /// Moves in smooth motion from `from` to the first event, to where loads aren't smooth, or to `end` (s).
     pub(super) fn go_on(
@@ -101,6 +109,8 @@ impl EventDriven {
             return Ok(Stop::Stuck);
         }
         let (mut t, mut duration) = (from.t, 0.0);
+        // A search for the last event may have shortened it to nothing.
+        self.h = self.h.max(SHORT * shortest(t, from.dt));
         let (mut noise, mut noisy, mut flat) = (0.0_f64, f64::INFINITY, 0);
         let (mut before, mut explored, mut halvings) = (None::<(f64, f64)>, false, 0);
         let (mut is_open_known, mut is_refused) = (false, false);
@@ -111,7 +121,7 @@ impl EventDriven {
             let enough = if is_refused { 1.0 } else { 0.9 };
             let mut h = if self.h < enough * rest { self.h } else { rest };
             is_refused = true;
-            if !(h > 4.0 * f64::EPSILON * t.abs()) {
+            if !(h > shortest(t, from.dt)) {
                 // Rounding leaves no time to go on.
                 return if rest > STEP_LEFT * from.dt {
                     Ok(Stop::Stuck)
@@ -167,7 +177,8 @@ impl EventDriven {
             let any = self.find_watches(model, t, h, work)?;
             // Where another side faces a corner by the end, the contact that touched first isn't watched: it is
             // where the step is shorter.
-            if halvings < MOST_HALVINGS && self.watched.iter().any(Watch::comes_from_beside) {
+            let is_long = 0.5 * h > 4.0 * shortest(t, from.dt);
+            if halvings < MOST_HALVINGS && is_long && self.watched.iter().any(Watch::comes_from_beside) {
                 halvings += 1;
                 self.h = 0.5 * h;
                 work.counts.refused_attempts += 1;
@@ -199,6 +210,9 @@ impl EventDriven {
                 if duration > 0.0 {
                     self.smooth.project(model, t, &mut self.y, work)?;
                     self.end_phase(model, from, t, duration, work)?;
+                } else if self.y[size.q..size.q + size.v] != from.v {
+                    // What the contacts' coming to rest did to the velocities decides what they do.
+                    self.end_phase(model, from, t, f64::MIN_POSITIVE, work)?;
                 }
                 return Ok(stop);
             }

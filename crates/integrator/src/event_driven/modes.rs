@@ -38,6 +38,8 @@ pub(super) struct Pressing {
     pub(super) force: Vector<2>,
     /// The same before friction is shared, N.
     pub(super) alone: Vector<2>,
+    /// The weight of its friction among distributions of forces.
+    pub(super) weight: f64,
     /// Its relative velocity, m/s.
     pub(super) u: Vector<2>,
     /// That at the start of the phase, m/s.
@@ -73,6 +75,7 @@ impl Pressing {
             friction,
             force: zero,
             alone: zero,
+            weight: 1.0,
             u: zero,
             u_before: zero,
             scale: 0.0,

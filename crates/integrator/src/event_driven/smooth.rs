@@ -26,6 +26,11 @@ const LEAST_SCALE: f64 = 1e-3;
 /// Contacts that share friction are at its limit together, up to this part of their scale.
 const SHARED: f64 = 1e-6;
 
+/// Rounds in search of forces within all friction cones, and the factor of the weight of what is outside of its own: weights
+/// reach a million, as much as the solution of a singular system allows.
+const WEIGHTINGS: usize = 12;
+const HEAVIER: f64 = 3.0;
+
 /// A determinant below this, of a matrix with 1 on its diagonal, is 0.
 const SINGULAR: f64 = 1e-12;
 
@@ -320,6 +325,7 @@ impl Smooth {
         }
         self.solve_forces(|_| 1.0);
         self.share_friction();
+        self.keep_within_friction();
         self.find_held();
         Ok(())
     }
@@ -390,6 +396,32 @@ impl Smooth {
         if self.contacts.iter().any(|contact| contact.force.iter().any(|f| f.is_nan())) {
             self.contacts.iter_mut().for_each(|contact| contact.force = contact.alone);
         }
+    }
+
+    /// Of several distributions of forces, looks for one in which no contact is over its friction: what is over it gets a larger
+    /// weight, round by round. Where there is none the first one stays.
+    fn keep_within_friction(&mut self) {
+        let is_over = |contact: &Pressing| contact.holds() < -SHARED;
+        if !self.contacts.iter().any(is_over) {
+            return;
+        }
+        for contact in &mut self.contacts {
+            (contact.alone, contact.weight) = (contact.force, 1.0);
+        }
+        for _ in 0..WEIGHTINGS {
+            for contact in self.contacts.iter_mut().filter(|contact| is_over(contact)) {
+                contact.weight *= HEAVIER;
+            }
+            self.solve_forces(|contact| contact.weight);
+            // Also true for NaN.
+            if !self.contacts.iter().all(|contact| contact.presses() >= -SHARED) {
+                break;
+            }
+            if !self.contacts.iter().any(is_over) {
+                return;
+            }
+        }
+        self.contacts.iter_mut().for_each(|contact| contact.force = contact.alone);
     }
 
     /// Finds how far contacts are from sliding. Where a body can't move along one of them while another sticks, as two feet of a block on

@@ -45,13 +45,16 @@ pub fn spectrum_periods() -> Vec<f64> {
     (0..count).map(|k| low * (high / low).powf(k as f64 / (count - 1) as f64)).collect()
 }
 
-/// The figures of a record for files: `records.svg`, its motion over time, and `spectra.svg`, its
-/// response spectrum.
+/// The figures of a record for files, of this width (mm, from 60 to 300): `records.svg`, its motion over time, and
+/// `spectra.svg`, its response spectrum.
 #[must_use]
-pub fn record_figures(record: &Arc<RecordScene>) -> Vec<(String, String)> {
+pub fn record_figures(record: &Arc<RecordScene>, width_mm: f64) -> Vec<(String, String)> {
     let records = std::slice::from_ref(record);
     let figures = [("records.svg", histories(records)), ("spectra.svg", spectra(records))];
-    figures.into_iter().filter_map(|(name, figure)| Some((name.to_owned(), figure?.to_svg()))).collect()
+    figures
+        .into_iter()
+        .filter_map(|(name, figure)| Some((name.to_owned(), figure?.width_mm(width_mm).to_svg())))
+        .collect()
 }
 
 /// A self-contained page of a record in the style of a run's report; `subtitle` says how it was

@@ -1,8 +1,8 @@
 //! The scene at its end as drawings to scale: the network of contact forces, and lines of thrust.
 
 use super::chain::{LastPicture, Thrust, ThrustLine, thrust_lines};
-use super::outline::Outline;
-use super::recorder::{BLOCK_FRAME, PageRecorder};
+use super::placed;
+use super::recorder::PageRecorder;
 use crate::with_digits;
 use teeter_plot::{Axis, Colour, Drawing, Figure, Panel, Series};
 use teeter_scenario::scene::SupportingBody;
@@ -18,54 +18,16 @@ const DRAWING: f64 = 113.0;
 
 /// The scene where it is in the last picture.
 fn scene(recorder: &PageRecorder, last: &LastPicture<'_>, title: &str) -> Drawing {
-    let scenery = &recorder.scenery;
-    let mut moved_at = BLOCK_FRAME * scenery.blocks.len() + scenery.beams.iter().map(|beam| beam.points).sum::<usize>();
     let mut drawing = Drawing::new(title);
-    let (mut first, mut beams) = (BLOCK_FRAME * scenery.blocks.len(), Vec::new());
-    for (beam, place) in scenery.beams.iter().zip(&recorder.layout.beams) {
-        let shift = place.supports.as_ref().map_or([0.0; 2], |range| {
-            let shift = [last.row[moved_at], last.row[moved_at + 1]];
-            moved_at += range.len();
-            shift
-        });
-        let w = &last.row[first..first + beam.points];
-        first += beam.points;
-        // As in the moving picture: the line that is touched, the axis or the top fibre, is the upper edge.
-        let x = |k: usize| beam.x + shift[0] + beam.span * k as f64 / (beam.points - 1) as f64;
-        let top = if beam.top { 0.5 * beam.thickness } else { 0.0 };
-        let y = |k: usize| beam.y + shift[1] + w[k] + top;
-        let above = (0..beam.points).map(|k| (x(k), y(k)));
-        let below = (0..beam.points).rev().map(|k| (x(k), y(k) - beam.thickness));
-        beams.push(above.chain(below).collect());
+    let outlines = placed::blocks(recorder, last.row).concat();
+    // As far as the blocks are.
+    let ends =
+        outlines.iter().flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(at.0), b.max(at.0)));
+    let room = 0.03 * (ends.1 - ends.0);
+    if let Some(surface) = placed::ground(recorder, last.row, ends.0 - room, ends.1 + room) {
+        drawing = drawing.ground(surface);
     }
-    let outlines: Vec<Vec<(f64, f64)>> =
-        scenery.blocks.iter().zip(&last.poses).flat_map(|(block, pose)| Outline::of(block, *pose).lines()).collect();
-    if scenery.ground {
-        let ends =
-            outlines.iter().flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(at.0), b.max(at.0)));
-        let room = 0.03 * (ends.1 - ends.0);
-        let [x, y, slope] = recorder.layout.ground.as_ref().map_or([0.0, 0.0, scenery.incline], |range| {
-            let start = last.row.len() - range.len();
-            [last.row[start], last.row[start + 1], last.row[start + 2]]
-        });
-        let (sin, cos) = slope.sin_cos();
-        // Along the surface, in its own coordinates, as far as the blocks are.
-        let own = |at: f64| (at - x) / cos.abs().max(1e-3);
-        let (left, right) = (own(ends.0 - room), own(ends.1 + room));
-        let profile = &scenery.profile;
-        let height = |at: f64| match profile.iter().position(|point| point[0] > at) {
-            None => profile.last().map_or(0.0, |point| point[1]),
-            Some(0) => profile[0][1],
-            Some(next) => {
-                let ([x0, y0], [x1, y1]) = (profile[next - 1], profile[next]);
-                y0 + (at - x0) / (x1 - x0) * (y1 - y0)
-            }
-        };
-        let within = profile.iter().copied().filter(|point| point[0] > left && point[0] < right);
-        let surface = std::iter::once([left, height(left)]).chain(within).chain([[right, height(right)]]);
-        drawing = drawing.ground(surface.map(|[a, b]| (x + cos * a - sin * b, y + sin * a + cos * b)));
-    }
-    drawing.outlines(beams, Colour::Grid).outlines(outlines, Colour::Shade)
+    drawing.outlines(placed::beams(recorder, last.row), Colour::Grid).outlines(outlines, Colour::Shade)
 }
 
 /// When, and over how long the forces are means.

@@ -311,9 +311,10 @@ fn pair_file(file: &str, block: &str, surface: &str) -> String {
     format!("{file}-{block}-on-{surface}")
 }
 
-/// Whether a file of that name is the figure of one of many pairs, as `contact_forces` or `slip`.
+/// Whether a file of that name is the figure of one of many pairs, as `contact_forces` or `slip`, as SVG or PDF.
 pub(crate) fn is_pair_figure(file: &str, name: &str) -> bool {
-    let pair = name.strip_prefix(file).and_then(|rest| rest.strip_prefix('-')?.strip_suffix(".svg"));
+    let stem = name.strip_suffix(".svg").or_else(|| name.strip_suffix(".pdf"));
+    let pair = stem.and_then(|stem| stem.strip_prefix(file)?.strip_prefix('-'));
     pair.is_some_and(|pair| {
         pair.split_once("-on-").is_some_and(|(block, surface)| !block.is_empty() && !surface.is_empty())
     })

@@ -8,8 +8,11 @@ use super::many::Many;
 use super::{Resolver, names};
 use crate::dimension::Dimension;
 use crate::measure::Measure;
-use crate::scene::{ContactScene, Crowd, SupportingBody};
+use crate::scene::{BlockScene, ContactScene, Crowd, GroundScene, SupportingBody};
 use crate::words::{ContactFrames, Law};
+
+/// The keys of the friction of the left and the right foot.
+const FEET: [&str; 2] = ["friction_left", "friction_right"];
 
 /// The contact between a block and a body; a contact between two blocks is entered for both.
 pub(super) type Joined = BTreeMap<(usize, SupportingBody), usize>;
@@ -148,7 +151,59 @@ impl Resolver<'_, '_> {
         self.only_at_beams(&path, [surface]);
         let kinematics = kinematics?;
         let (face, sides) = (BeamFace::Upper, self.has_sides(&path, surface, kinematics));
-        Some(ContactScene { name: name.to_owned(), between, block, surface, law: law?, kinematics, face, sides })
+        let feet_friction = self.feet_friction(&path);
+        self.feet_stand_on_surfaces(&path, feet_friction, matches!(surface, SupportingBody::Block(_)));
+        let name = name.to_owned();
+        Some(ContactScene { name, between, block, surface, law: law?, feet_friction, kinematics, face, sides })
+    }
+
+    /// Friction of the left and the right foot.
+    pub(super) fn feet_friction(&mut self, path: &str) -> [Option<f64>; 2] {
+        FEET.map(|key| self.doc.number(&format!("{path}.{key}")))
+    }
+
+    /// Refuses friction of feet in a contact that is also between blocks, whose corners touch each other in either way.
+    pub(super) fn feet_stand_on_surfaces(&mut self, path: &str, feet: [Option<f64>; 2], between_blocks: bool) {
+        let given = FEET.iter().zip(feet).find(|(_, friction)| friction.is_some());
+        if let Some((key, _)) = given.filter(|_| between_blocks) {
+            let rule = "it is for blocks on a beam or the ground, but this contact is between blocks";
+            self.error(
+                &format!("{path}.{key}"),
+                rule,
+                "leave it out, or name one of the blocks and the beam or `ground`",
+            );
+        }
+    }
+
+    /// Refuses friction of feet of blocks that stand on no two sharp corners, or on ground with a profile.
+    pub(super) fn feet_are_sharp(
+        &mut self,
+        ground: &Option<Option<GroundScene>>,
+        contacts: &[Option<ContactScene>],
+        blocks: &[Option<BlockScene>],
+    ) {
+        let bent = matches!(ground, Some(Some(ground)) if ground.profile.is_some());
+        let mut refused = Vec::new();
+        for contact in contacts.iter().flatten().filter(|contact| contact.feet_friction != [None; 2]) {
+            let Some(Some(block)) = blocks.get(contact.block) else { continue };
+            let [left, right] = block.feet();
+            let why = if (0..block.corners().len()).any(|corner| block.corner_radius(corner) > 0.0) {
+                format!("`{}` is round, and touches by points that move along it", block.name)
+            } else if left == right {
+                format!("`{}` stands on one corner", block.name)
+            } else if bent && contact.surface == SupportingBody::Ground {
+                "the ground has a profile, whose crests touch the block, too".to_owned()
+            } else {
+                continue;
+            };
+            let key = if contact.feet_friction[0].is_some() { FEET[0] } else { FEET[1] };
+            refused.push((format!("contact.{}.{key}", contact.name), why));
+        }
+        refused.dedup_by(|a, b| a.0 == b.0);
+        for (key, why) in refused {
+            let remedy = "give one `friction`; feet have their own only as sharp corners on a beam or on even ground";
+            self.error(&key, why, remedy);
+        }
     }
 
     pub(super) fn kinematics(&mut self, path: &str) -> Option<Kinematics> {

@@ -231,6 +231,7 @@ impl Resolver<'_, '_> {
     ) -> Option<Vec<ContactScene>> {
         let path = format!("contact.{}", of.name);
         let (law, kinematics) = (self.pair_law(&path)?, self.kinematics(&path)?);
+        let feet_friction = self.feet_friction(&path);
         let mut found: Vec<ContactScene> = Vec::new();
         let mut entered: BTreeSet<PairKey> = BTreeSet::new();
         for ((block, surface), [a, b]) in of.touching(crowded) {
@@ -247,9 +248,12 @@ impl Resolver<'_, '_> {
                 _ => (block, surface, [a.0.clone(), b.0.clone()]),
             };
             let (face, sides) = (BeamFace::Upper, self.has_sides(&path, surface, kinematics));
-            found.push(ContactScene { name: of.name.clone(), between, block, surface, law, kinematics, face, sides });
+            let name = of.name.clone();
+            found.push(ContactScene { name, between, block, surface, law, feet_friction, kinematics, face, sides });
         }
         self.only_at_beams(&path, found.iter().map(|contact| contact.surface));
+        let other = found.iter().any(|contact| contact.other_block().is_some()) || crowded.is_some();
+        self.feet_stand_on_surfaces(&path, feet_friction, other);
         let between_blocks = found.iter().all(|contact| contact.other_block().is_some());
         let first = found.first().map(|contact| contact.surface);
         // Without any that are listed it is one of a crowd, or of nothing.

@@ -537,6 +537,9 @@ fn a_table_is_read_by_its_columns_its_unit_or_its_step_alone() {
         ("0 100 9\n2 200 9\n2 300 9\n0 400 9\n", "columns = ['2', '1']\ntime_unit = 'ms'"),
         ("0\n2\n2\n0\n", "step = '0.1 s'\nstart = '0.1 s'"),
         ("a\n0\n2\n2\n0\n", "step = '100 ms'"),
+        // One column with decimal commas.
+        ("0,0\n2,0\n2,0\n0,0\n", "step = '0.1 s'"),
+        ("a\n0\n2,00\n2,00\n0\n", "step = '0.1 s'"),
     ] {
         let found = impulse(file, keys);
         assert!((found - 3.0 * 0.4).abs() < 1e-14, "{keys}: {found}");

@@ -330,3 +330,107 @@ fn a_pile_at_rest_shares_its_friction() {
         assert!((q - other).abs() < 1e-9, "{:?} and {:?}", long.q, short.q);
     }
 }
+
+/// A trapezoid tapers upwards on one that slides under it, and rattles between its feet. While it falls with the lower one,
+/// nothing closes the foot that was thrown off; the push on its other foot does. Later it tips over, which makes any difference
+/// larger.
+#[test]
+fn rattling_between_two_feet_ends() {
+    bounces_end(
+        "[time]\nend = '0.08 s'\nstep = '1 ms'\n[ground]\n\
+         [contact.all]\nbetween = ['*', '*']\nfriction = 0.237\nrestitution = 0.419\n\
+         [block.under]\ndensity = '827 kg/m^3'\ndepth = '10 cm'\non = 'ground'\nat = '0 m'\n\
+         shape = { kind = 'trapezoid', bottom = '12.61 cm', top = '12.97 cm', height = '21.27 cm' }\n\
+         velocity = ['1.043 m/s', '0 m/s']\n\
+         [block.over]\ndensity = '827 kg/m^3'\ndepth = '10 cm'\non = 'under'\nat = '1.24 cm'\n\
+         shape = { kind = 'trapezoid', bottom = '7.8 cm', top = '4.86 cm', height = '17.63 cm' }\n",
+    );
+}
+
+/// A pentagon rattles to rest on a block: the last bounces, which are none, still turn the slides of other contacts.
+#[test]
+fn what_slides_after_the_last_bounce_is_found() {
+    bounces_end(
+        "[time]\nend = '0.5 s'\nstep = '1 ms'\n\
+         [ground]\nprofile = { points = [['-0.8 m', '0 m'], ['-0.6462 m', '0.1196 m'], \
+         ['-0.2552 m', '0.1352 m'], ['0.0155 m', '0.1209 m'], ['0.7871 m', '0.1209 m']] }\n\
+         [contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.563\nrestitution = 0.0\n\
+         [contact.blocks]\nbetween = ['b*', 'b*']\nfriction = 0.458\nrestitution = 0.0\n\
+         [block.b0]\ndensity = '1762 kg/m^3'\ndepth = '10 cm'\nposition = ['0.0777 m', '0.3497 m']\n\
+         shape = { kind = 'regular', sides = 5, radius = '0.0859 m' }\nangle = '10.64 deg'\n\
+         velocity = ['0.108 m/s', '-1.522 m/s']\nspin = '7.880 rad/s'\n\
+         [block.b1]\ndensity = '1762 kg/m^3'\ndepth = '10 cm'\nwidth = '0.2273 m'\nheight = '0.2192 m'\n\
+         on = 'ground'\nat = '0.3479 m'\ntilt = '-7 deg'\nvelocity = ['-0.317 m/s', '0 m/s']\n",
+    );
+}
+
+/// A block strikes a wedge, both on slippery ground: they go on together, whatever friction there is between them. Of the
+/// forces that fit, some are within its limit.
+#[test]
+fn a_block_wedged_on_slippery_ground_keeps_its_friction() {
+    bounces_end(
+        "[time]\nend = '0.5 s'\nstep = '1 ms'\n[material.m]\ndensity = '1766 kg/m^3'\n[ground]\n \
+         profile = { points = [['-0.8 m', '0 m'], ['-0.7052 m', '0 m'], ['-0.3383 m', \
+         '0.0005 m'], ['-0.0866 m', '0.0005 m'], ['0.1927 m', '0.0005 m'], ['0.5334 m', '0.0376 m']] }\n \
+         [block.b0]\nmaterial = 'm'\nwidth = '0.2097 m'\nheight = '0.1647 m'\ndepth = '10 cm'\n \
+         position = ['-0.0721 m', '0.3383 m']\nangle = '47.6 deg'\n \
+         velocity = ['0.246 m/s', '-1.348 m/s']\nspin = '0.682 rad/s'\n[block.b1]\nmaterial = 'm'\n \
+         shape = { kind = 'trapezoid', bottom = '0.1664 m', top = '0.0896 m', height = '0.0911 m' }\n \
+         depth = '10 cm'\non = 'ground'\nat = '0.3301 m'\ntilt = '-6.71 deg'\n \
+         velocity = ['-0.107 m/s', '0 m/s']\n[contact.floor]\nbetween = ['*', 'ground']\n \
+         friction = 0.000\nrestitution = 0.000\n[contact.blocks]\nbetween = ['b*', 'b*']\n \
+         friction = 0.204\nrestitution = 0.000\n",
+    );
+}
+
+/// Three blocks on shaken ground meet: the friction of each depends on that of the others, and can be shared in many ways.
+#[test]
+fn blocks_on_shaken_ground_hold_each_other() {
+    bounces_end(
+        "[time]\nend = '0.5 s'\nstep = '1 ms'\n[material.m]\ndensity = '2551 kg/m^3'\n[ground]\n \
+         motion = { acceleration = ['-3.959 m/s^2', '0 m/s^2'], signal = 's' }\n[signal.s]\n \
+         shape = 'harmonic'\nfrequency = '4.185 Hz'\nphase = '276.9 deg'\n[block.b0]\nmaterial = 'm'\n \
+         width = '0.1085 m'\nheight = '0.1116 m'\nrounding = '0.0481 m'\ndepth = '10 cm'\n \
+         on = 'ground'\nat = '-0.4911 m'\n[block.b1]\nmaterial = 'm'\nwidth = '0.1903 m'\n \
+         height = '0.0821 m'\ndepth = '10 cm'\non = 'ground'\nat = '-0.1046 m'\ntilt = '-3.18 deg'\n \
+         [block.b2]\nmaterial = 'm'\n \
+         points = [['0.1116 m', '0.0416 m'], ['0.0874 m', '0.0778 m'], ['0.0547 m', \
+         '0.1011 m'], ['-0.1106 m', '0.0439 m'], ['0.0582 m', '-0.0993 m'], ['0.1199 m', '-0.0019 m']]\n \
+         depth = '10 cm'\non = 'ground'\nat = '0.1931 m'\ntilt = '-6.17 deg'\n[block.b3]\n \
+         material = 'm'\nwidth = '0.2126 m'\nheight = '0.1095 m'\nrounding = '0.0102 m'\n \
+         depth = '10 cm'\non = 'ground'\nat = '0.4091 m'\ntilt = '-6.58 deg'\n[contact.floor]\n \
+         between = ['*', 'ground']\nfriction = 0.303\nrestitution = 0.000\n[contact.blocks]\n \
+         between = ['b*', 'b*']\nfriction = 0.303\nrestitution = 0.000\n",
+    );
+}
+
+/// Corners of a cube on a slope meet a point of the profile from beside it, again and again within picoseconds.
+#[test]
+fn what_a_search_for_corners_shortens_is_taken_up_again() {
+    bounces_end(
+        "[time]\nend = '0.4 s'\nstep = '1 ms'\n[material.m]\ndensity = '976 kg/m^3'\n[ground]\n \
+         profile = { points = [['-0.8 m', '0 m'], ['-0.434 m', '0 m'], ['-0.0379 m', \
+         '0.0377 m'], ['0.133 m', '0.0377 m'], ['0.5253 m', '0.0611 m'], ['0.7556 m', '0.1102 m']] }\n \
+         [block.b0]\nmaterial = 'm'\nwidth = '0.193 m'\nheight = '0.1238 m'\nrounding = '0.021 m'\n \
+         depth = '10 cm'\non = 'ground'\nat = '-0.4 m'\nvelocity = ['0.609 m/s', '0 m/s']\n[block.b1]\n \
+         material = 'm'\nshape = { kind = 'regular', sides = 4, radius = '0.0596 m' }\ndepth = '10 cm'\n \
+         on = 'ground'\nat = '-0.1378 m'\n[block.b2]\nmaterial = 'm'\nradius = '0.09 m'\n \
+         depth = '10 cm'\non = 'ground'\nat = '0.1317 m'\ntilt = '1.44 deg'\n[contact.floor]\n \
+         between = ['*', 'ground']\nfriction = 0.000\nrestitution = 0.487\n[contact.blocks]\n \
+         between = ['b*', 'b*']\nfriction = 0.000\nrestitution = 0.487\n",
+    );
+}
+
+/// A lintel chatters on its columns, more often than is located: the first steps find that out, and the others don't look for as
+/// many events.
+#[test]
+fn steps_that_are_given_up_one_after_the_other_take_less_and_less_work() {
+    let sets = [("time.scheme", "'event-driven'"), ("time.step", "'1 ms'")];
+    let sets: Vec<(String, String)> = sets.into_iter().map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
+    let scene = include_bytes!("../../../../scenarios/lintel.toml");
+    let resolved = teeter_scenario::load(scene, "lintel", "lintel", &sets).unwrap();
+    let mut simulation = Simulation::new(&resolved.scene).unwrap();
+    let phases: Vec<usize> = (0..7).map(|_| simulation.step().unwrap().phases().count()).collect();
+    assert_eq!(simulation.state.tally.unlocated_steps, 7, "{phases:?}");
+    assert!(phases[5..].iter().all(|phases| *phases < 40), "{phases:?}");
+}

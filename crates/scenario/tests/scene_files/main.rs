@@ -6,6 +6,7 @@ mod beams;
 mod crowds;
 mod driven;
 mod event_driven;
+mod feet;
 mod located;
 mod many;
 mod modes;

@@ -92,6 +92,16 @@ fn blocks_and_grounds_that_turn_far_in_a_step_are_warned_of() {
         format!("{}[signal.s]\nshape = 'harmonic'\nfrequency = '50 Hz'\n", turning("angle = '1 rad', signal = 's'"));
     let found = resolved(&swung, "").warnings;
     assert!(found.iter().any(|found| found.path == "ground.motion.angle"), "{found:?}");
+    // A product turns as its factors do, times the bounds of the others: 0.5 rad × 2π 50 Hz × 3, 0.47 rad in a step of 1 ms.
+    let product = "[signal.s]\nshape = 'product'\nfactors = ['level', 'swing']\n[signal.level]\nshape = 'constant'\nscale = 3\n\
+        [signal.swing]\nshape = 'harmonic'\nfrequency = '50 Hz'\n";
+    let turns = |angle: &str| {
+        let found =
+            resolved(&format!("{}{product}", turning(&format!("angle = '{angle}', signal = 's'"))), "").warnings;
+        found.into_iter().find(|found| found.path == "ground.motion.angle" && found.rule.contains("it turns by"))
+    };
+    assert!(turns("0.5 rad").unwrap().rule.contains("it turns by 0.47 rad in a step"));
+    assert!(turns("0.1 rad").is_none());
 }
 
 #[test]
