@@ -142,7 +142,7 @@ mod tests {
         far[3] = 1e300;
         assert!(matches!(Column::of_pose(&far), Column::Plain(_)));
         // A few values far from zero keep their course.
-        let Column::Plain(few) = Column::of(&[1234.5, 1234.500_03], SEEN) else { panic!("packed") };
+        let Column::Plain(few) = Column::of(&[1_234.5, 1_234.500_03], SEEN) else { panic!("packed") };
         assert!((few[1] - few[0] - 3e-5).abs() < 1e-9, "{few:?}");
     }
 }
