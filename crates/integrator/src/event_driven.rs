@@ -56,8 +56,8 @@ const USUAL_PHASES: usize = 100;
 /// Numbers that the state's memory holds of a contact: pair, point, mode, level.
 const REMEMBERED: usize = 4;
 
-/// After steps that it gave up one after the other, each has half as many events as the one before, up to so many times: where
-/// a beam chatters on its bearings, all of them are the located scheme's in the end.
+/// Of steps one after the other with more events than are located, each may have half as many as the one before, up to so many
+/// times: where a beam chatters on its bearings, almost all of them are the located scheme's in the end.
 const LEAST_OF_EVENTS: u32 = 4;
 
 /// What it can't step.
@@ -136,6 +136,8 @@ pub struct EventDriven {
     substeps: usize,
     /// Whether loads or drives aren't smooth where the phase would end.
     ends_with_break: bool,
+    /// Whether the step had more events than are located.
+    had_too_many: bool,
 }
 
 /// Where a smooth phase ended.
@@ -202,6 +204,7 @@ impl EventDriven {
             near: 0.0,
             substeps: 0,
             ends_with_break: false,
+            had_too_many: false,
         })
     }
 
@@ -294,8 +297,11 @@ impl Scheme<2> for EventDriven {
             if located { contacts.iter().any(|own| own.id == contact.id) } else { contact.p[0] > 0.0 }
         })?;
         self.numbers.clear();
-        // What isn't above 0 is no step: the next one begins anew.
-        self.numbers.push(if located { self.h } else { -f64::from(gave_up(state).saturating_add(1)) });
+        // Without a step the next one begins anew.
+        self.numbers.extend(located.then_some(self.h));
+        if self.had_too_many {
+            self.numbers.push(-f64::from(had_too_many(state).saturating_add(1)));
+        }
         for contact in self.smooth.contacts.iter().filter(|_| located) {
             let Pressing { id, mode, level, .. } = contact;
             self.numbers.extend([f64::from(id.pair()), f64::from(id.point()), mode.number(), *level]);
@@ -318,7 +324,8 @@ impl EventDriven {
     ) -> Result<bool, StepError> {
         work.factors(model, MASSES, &from.q, Keep::Pinned)?;
         (self.handled, self.substeps) = (from.t, 0);
-        let given_up = gave_up(from);
+        let before = had_too_many(from);
+        self.had_too_many = false;
         let jumped = self.jump(model, from, work)?;
         if from.memory.active().len() > Self::MOST_CONTACTS {
             self.smooth.contacts.clear();
@@ -333,7 +340,7 @@ impl EventDriven {
             return self.give_up(model, from, span, work);
         }
         let (mut at, mut idle) = (from.t, 0);
-        let (mut events, most) = (0, Self::MOST_EVENTS >> given_up.min(LEAST_OF_EVENTS));
+        let (mut events, most) = (0, Self::MOST_EVENTS >> before.min(LEAST_OF_EVENTS));
         while events <= most {
             let stop = self.go_on(model, from, span.end, work)?;
             idle = if from.t == at { idle + 1 } else { 0 };
@@ -359,6 +366,7 @@ impl EventDriven {
                 }
             }
         }
+        self.had_too_many = events > most;
         self.give_up(model, from, span, work)
     }
 
@@ -495,8 +503,8 @@ impl EventDriven {
     }
 }
 
-/// How many steps it has given up one after the other.
-fn gave_up(state: &State) -> u32 {
+/// In how many steps, one after the other, there were more events than are located.
+fn had_too_many(state: &State) -> u32 {
     state.memory.all_numbers().first().map_or(0, |number| if *number < 0.0 { -number as u32 } else { 0 })
 }
 
