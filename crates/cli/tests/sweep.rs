@@ -351,7 +351,8 @@ fn files_are_an_axis() {
 }
 
 /// ω² times the largest displacement of an oscillator of this period and 5 % damping, whose support is
-/// accelerated by one sine of 0.2 s, linear between 20 values, until that ends: by the classical Runge–Kutta method.
+/// accelerated by one sine of 0.2 s, linear between 20 values, then and in the free vibration of 0.5 s after it: by the
+/// classical Runge–Kutta method.
 fn oscillator(period: f64) -> f64 {
     let value = |k: u32| (std::f64::consts::PI * 0.1 * f64::from(k)).sin();
     let ground = |t: f64| {
@@ -362,7 +363,7 @@ fn oscillator(period: f64) -> f64 {
     let omega = std::f64::consts::TAU / period;
     let rate = |t: f64, [x, v]: [f64; 2]| [v, -ground(t) - 2.0 * 0.05 * omega * v - omega * omega * x];
     let (h, mut state, mut largest) = (1e-5, [0.0, 0.0], 0.0_f64);
-    for k in 0..20_000_u32 {
+    for k in 0..70_000_u32 {
         let t = h * f64::from(k);
         let after = |slope: [f64; 2], h: f64| [state[0] + h * slope[0], state[1] + h * slope[1]];
         let a = rate(t, state);
