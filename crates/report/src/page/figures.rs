@@ -5,7 +5,7 @@ use super::bands::BAND_COLUMNS;
 use super::content::largest;
 use super::crowd::CrowdCurve;
 use super::drawings;
-use super::panels::{Panels, Place, Portrait, PortraitLine, TimePanel, prefix, time_unit};
+use super::panels::{Panels, Place, Portrait, PortraitLine, TimePanel, cut_at, prefix, time_unit};
 use super::recorder::{MANY_IMPACTS, PageRecorder};
 use super::{means, span};
 use crate::{shortest, with_digits};
@@ -354,19 +354,10 @@ fn stretches(borders: &[f64], states: &[ContactState]) -> Vec<(f64, f64, Colour)
     stretches
 }
 
-/// A force this many times the one that nine of ten samples stay below is a peak of an impact, whose height is that of
-/// the sample's length; the axis then ends at half as much, for the rest to be legible.
-const PEAK: f64 = 6.0;
-
 /// The range that shows the forces between impacts, where those would dwarf them.
 fn cut(lines: &[Series], least: f64, unit: &str) -> (Option<(f64, f64)>, Option<String>) {
-    let mut sizes: Vec<f64> = values(lines).map(f64::abs).filter(|y| *y > least && y.is_finite()).collect();
-    sizes.sort_by(f64::total_cmp);
-    let (Some(&usual), Some(&largest)) = (sizes.get(sizes.len() * 9 / 10), sizes.last()) else { return (None, None) };
-    if largest <= PEAK * usual {
-        return (None, None);
-    }
-    let limit = 0.5 * PEAK * usual;
+    let sizes = values(lines).map(f64::abs).filter(|y| *y > least && y.is_finite()).collect();
+    let Some((limit, largest)) = cut_at(sizes) else { return (None, None) };
     let negative = values(lines).any(|y| y < -0.01 * limit);
     let low = if negative { -limit } else { -0.06 * limit };
     (Some((low, limit)), Some(format!("peaks cut, up to {} {unit}", shortest(largest, 3))))

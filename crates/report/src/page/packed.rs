@@ -17,12 +17,12 @@ impl Packed {
 
     /// Appends a number of either sign: 0, −1, 1, −2 as 0, 1, 2, 3.
     pub(crate) fn push_signed(&mut self, x: i64) {
-        self.push(((x << 1) ^ (x >> 63)) as u64);
+        self.push(unsigned(x));
     }
 
     /// The same, but 0 stays free for a number that is missing.
     pub(crate) fn push_after_null(&mut self, x: i64) {
-        self.push(((x << 1) ^ (x >> 63)) as u64 + 1);
+        self.push(unsigned(x) + 1);
     }
 
     /// The text.
@@ -39,6 +39,11 @@ impl Packed {
         }
         text
     }
+}
+
+/// 0, −1, 1, −2 as 0, 1, 2, 3.
+fn unsigned(x: i64) -> u64 {
+    ((x << 1) ^ (x >> 63)) as u64
 }
 
 #[cfg(test)]

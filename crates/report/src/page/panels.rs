@@ -128,12 +128,18 @@ fn seen<'a>(forces: impl Iterator<Item = &'a f64>) -> f64 {
     let mut sizes: Vec<f64> = forces.map(|f| f.abs()).filter(|f| f.is_finite()).collect();
     let most = largest(&sizes);
     sizes.retain(|f| *f > LEAST_FORCE * most);
+    cut_at(sizes).map_or(most, |(limit, _)| limit)
+}
+
+/// A force this many times the one that nine of ten samples stay below is a peak of an impact, whose height is that of
+/// the sample's length; the axis then ends at half as much, for the rest to be legible.
+const PEAK: f64 = 6.0;
+
+/// Where an axis of forces of these sizes ends because peaks dwarf the rest, and the largest of them.
+pub(crate) fn cut_at(mut sizes: Vec<f64>) -> Option<(f64, f64)> {
     sizes.sort_by(f64::total_cmp);
-    // By the rule of the plots' axes.
-    match sizes.get((0.9 * sizes.len() as f64) as usize) {
-        Some(usual) if most > 6.0 * usual => 3.0 * usual,
-        _ => most,
-    }
+    let (&usual, &largest) = (sizes.get(sizes.len() * 9 / 10)?, sizes.last()?);
+    (largest > PEAK * usual).then_some((0.5 * PEAK * usual, largest))
 }
 
 /// A force below this part of the largest is none.

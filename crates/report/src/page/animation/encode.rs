@@ -103,6 +103,7 @@ impl Encoder {
             File::Png(writer, _) => {
                 let [left, top, width, height] = area.map(|px| px as u32);
                 if !first {
+                    // A position is refused where the rectangle before, moved there, would leave the picture.
                     writer.set_frame_dimension(1, 1).map_err(failed)?;
                     writer.set_frame_position(left, top).map_err(failed)?;
                     writer.set_frame_dimension(width, height).map_err(failed)?;
