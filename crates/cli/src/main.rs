@@ -113,6 +113,11 @@ enum Command {
         #[cfg(feature = "animation")]
         #[command(flatten)]
         animate: animate::Animate,
+        /// Threads that share the contacts of bodies that stand apart; the results are the same to the
+        /// last byte (default: as many as there are cores)
+        #[cfg(feature = "parallel")]
+        #[arg(long, value_name = "N")]
+        threads: Option<std::num::NonZeroUsize>,
         /// Run again whenever the scene or a file that it names changes, until Ctrl-C
         #[arg(long, conflicts_with_all = ["resume", "dump_unconverged"])]
         watch: bool,
@@ -513,6 +518,8 @@ fn main() -> ExitCode {
             vtk,
             #[cfg(feature = "animation")]
             animate,
+            #[cfg(feature = "parallel")]
+            threads,
             watch,
         } => {
             set.extend(accuracy.map(|accuracy| ("time.accuracy".to_owned(), accuracy)));
@@ -539,6 +546,8 @@ fn main() -> ExitCode {
                 dump_unconverged,
                 #[cfg(feature = "animation")]
                 animate,
+                #[cfg(feature = "parallel")]
+                threads,
             };
             if watch { watch::watch(options).into() } else { run::run(&options).into() }
         }

@@ -6,6 +6,8 @@ use crate::interrupt::{self, INTERRUPTED};
 use crate::progress::StepBar;
 use crate::render::{Presenter, refusal};
 use crate::scene;
+#[cfg(feature = "parallel")]
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use teeter_report::{ENERGY_MADE, ENERGY_TAKEN, FILES, HORIZON, Results, UNLOCATED, with_digits, with_unit};
@@ -67,6 +69,9 @@ pub(crate) struct Options {
     pub(crate) dump_unconverged: Option<PathBuf>,
     #[cfg(feature = "animation")]
     pub(crate) animate: crate::animate::Animate,
+    /// Threads of the run; none: as many as there are cores.
+    #[cfg(feature = "parallel")]
+    pub(crate) threads: Option<NonZeroUsize>,
 }
 
 impl Options {
@@ -103,6 +108,11 @@ impl Options {
         #[cfg(feature = "animation")]
         if let Some((path, animation)) = self.animate.file() {
             job = job.animate(path, animation);
+        }
+        #[cfg(feature = "parallel")]
+        {
+            let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+            job = job.threads(self.threads.unwrap_or_else(cores).get());
         }
         Ok(job)
     }

@@ -106,6 +106,8 @@ mod stored;
 mod stretching;
 mod subsystem;
 mod theta_step;
+#[cfg(feature = "parallel")]
+mod threads;
 mod workspace;
 
 #[cfg(feature = "beam")]

@@ -32,6 +32,13 @@ impl Default for SolverSettings {
     }
 }
 
+impl SolverSettings {
+    pub(crate) fn stop(self, cancel: Option<&AtomicBool>) -> Stop<'_> {
+        let stop = Stop::new(self.tolerance, self.max_iterations);
+        cancel.map_or(stop, |flag| stop.with_cancel(flag))
+    }
+}
+
 /// Whether steps keep the account of energies, and look how deep contacts have sunk in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Account {
@@ -69,6 +76,28 @@ impl WorkCounts {
         self.contacts += contacts as u64;
         self.iterations += u64::from(outcome.iterations);
         self.unsolved += u64::from(!outcome.converged());
+    }
+
+    /// Adds the solving of another thread.
+    #[cfg(feature = "parallel")]
+    pub(crate) fn add_solves(&mut self, other: &Self) {
+        self.problems += other.problems;
+        self.contacts += other.contacts;
+        self.iterations += other.iterations;
+        self.unsolved += other.unsolved;
+    }
+
+    /// Solves a problem whose contacts have the standard law.
+    pub(crate) fn solve_standard<const D: usize>(
+        &mut self,
+        problem: &mut Problem<D>,
+        solver: &mut dyn ContactSolver<D>,
+        stop: &Stop<'_>,
+    ) -> Result<Outcome, ContactError> {
+        let (posed, p) = problem.pose()?;
+        let outcome = solver.solve(&posed, stop, p);
+        self.solved(p.len(), &outcome);
+        Ok(outcome)
     }
 }
 
@@ -122,6 +151,9 @@ pub struct Workspace<const D: usize> {
     pub counts: WorkCounts,
     pub(crate) factors: Factors<D>,
     pub(crate) laws: Laws<D>,
+    /// The solvers of the other threads.
+    #[cfg(feature = "parallel")]
+    pub(crate) forks: Vec<Box<dyn ContactSolver<D>>>,
     /// A problem with contacts that slide in given directions, as the solver sees it.
     directed: Problem<D>,
     /// Counts what changes the memory of the factors: a response may go by it only where nothing has come in between.
@@ -164,6 +196,8 @@ impl<const D: usize> Workspace<D> {
             counts: WorkCounts::default(),
             factors: Factors::new(),
             laws,
+            #[cfg(feature = "parallel")]
+            forks: Vec::new(),
             directed: Problem::default(),
             coupled: 0,
             open: false,
@@ -346,15 +380,10 @@ impl<const D: usize> Workspace<D> {
     /// Solves a problem, whose H is there, by its rules; `weight` is that of the velocity after in the mean that impulses do work with.
     #[inline]
     pub(crate) fn solve_problem(&mut self, problem: &mut Problem<D>, weight: f64) -> Result<Outcome, ContactError> {
-        let SolverSettings { tolerance, max_iterations } = self.settings;
         let cancel = self.cancel.clone();
-        let stop = Stop::new(tolerance, max_iterations);
-        let stop = cancel.as_deref().map_or(stop, |flag| stop.with_cancel(flag));
+        let stop = self.settings.stop(cancel.as_deref());
         let outcome = if problem.is_standard() {
-            let (posed, p) = problem.pose()?;
-            let outcome = self.solver.solve(&posed, &stop, p);
-            self.counts.solved(p.len(), &outcome);
-            outcome
+            self.counts.solve_standard(problem, self.solver.as_mut(), &stop)?
         } else {
             self.solve_by_rules(problem, weight, &stop)?
         };

@@ -35,6 +35,8 @@ pub struct RunJob {
     pub(crate) vtk: bool,
     #[cfg(feature = "animation")]
     pub(crate) animation: Option<(PathBuf, teeter_report::Animation)>,
+    #[cfg(feature = "parallel")]
+    pub(crate) threads: usize,
     extent: Extent,
     pub(crate) program: Option<[u8; 32]>,
 }
@@ -56,6 +58,8 @@ impl RunJob {
             vtk: false,
             #[cfg(feature = "animation")]
             animation: None,
+            #[cfg(feature = "parallel")]
+            threads: 1,
             extent: Extent::default(),
             program: None,
         }
@@ -139,6 +143,14 @@ impl RunJob {
     /// figures.
     pub fn without_report(mut self) -> Self {
         self.report = false;
+        self
+    }
+
+    /// On how many threads contacts of bodies that stand apart are solved, at least one, which is the default. The results are
+    /// the same to the last byte. Runs that [export contact problems](Self::export_problems) use one.
+    #[cfg(feature = "parallel")]
+    pub fn threads(mut self, threads: usize) -> Self {
+        self.threads = threads;
         self
     }
 

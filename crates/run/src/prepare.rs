@@ -48,6 +48,11 @@ impl RunJob {
             None => solver,
         })
         .map_err(|error| LoadError::of_build(&error, &resolved))?;
+        // Problems are exported in the order in which they are solved.
+        #[cfg(feature = "parallel")]
+        if watch.is_none() {
+            simulation.set_threads(self.threads);
+        }
         let folder = self.results_folder();
         self.check_inputs_kept(&folder, &resolved)?;
         // Before its whole content is hashed, as it may be a device.

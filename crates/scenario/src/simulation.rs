@@ -233,6 +233,13 @@ impl Simulation {
         self.work.counts
     }
 
+    /// Lets steps solve contacts of bodies that stand apart on so many threads, at least one, which is the default. The motion is
+    /// the same to the last bit.
+    #[cfg(feature = "parallel")]
+    pub fn set_threads(&mut self, threads: usize) {
+        self.work.set_threads(threads);
+    }
+
     /// Number of free velocities of the model, without those of held dofs and of beams at rest,
     /// which are only stored in the state.
     #[must_use]

@@ -23,17 +23,27 @@ const MANY: usize = 64;
 /// Memory for the islands.
 #[derive(Debug, Default)]
 pub(super) struct Islands<const D: usize> {
-    /// Whether W of each subsystem is diagonal.
-    diagonal: Vec<bool>,
-    /// What each contact shares with others: of all contacts, and of those of an island.
+    coupler: Coupler,
+    /// What each contact shares with others.
     shared: Incidence,
-    own: Incidence,
     found: teeter_contact::Islands,
-    spans: Vec<[Span; 2]>,
     problem: Problem<D>,
     /// What is known of the attempt before, if it is to be kept.
     kept: Option<Kept<D>>,
-    outcomes: Vec<Outcome>,
+    /// Of each island, once it is solved.
+    outcomes: Vec<Option<Outcome>>,
+    #[cfg(feature = "parallel")]
+    batch: crate::threads::Batch<D>,
+}
+
+/// Memory for coupling the contacts of an island.
+#[derive(Debug, Default)]
+struct Coupler {
+    /// Whether W of each subsystem is diagonal.
+    diagonal: Vec<bool>,
+    /// What each contact of the island shares with others.
+    own: Incidence,
+    spans: Vec<[Span; 2]>,
 }
 
 impl<const D: usize> Islands<D> {
@@ -104,13 +114,13 @@ impl<const D: usize> ContactStage<D> {
         over: Over,
         guard: &mut impl FnMut(&Self, &mut Problem<D>, &Laws<D>, Members<'_>) -> Result<bool, ContactError>,
     ) -> Result<Option<Outcome>, ContactError> {
-        let Islands { diagonal, shared, own, found, spans, problem, kept, outcomes } = islands;
-        diagonal.clear();
+        let Islands { coupler, shared, found, problem, kept, outcomes, .. } = islands;
+        coupler.diagonal.clear();
         for part in 0..model.parts().len() {
             let answer = work.factors.answer(part, responses);
-            diagonal.push(answer.is_some_and(|answer| answer.is_diagonal()));
+            coupler.diagonal.push(answer.is_some_and(|answer| answer.is_diagonal()));
         }
-        shared.load(self.len(), |i| keys(&self.rows, model, diagonal, &self.rows.spans[i]));
+        shared.load(self.len(), |i| keys(&self.rows, model, &coupler.diagonal, &self.rows.spans[i]));
         found.find_shared(shared);
         if found.len() == 1 && !self.problem.is_standard() {
             return Ok(None);
@@ -122,45 +132,116 @@ impl<const D: usize> ContactStage<D> {
             kept.recognise(&self.contacts, &self.problem);
         }
         outcomes.clear();
+        #[cfg(feature = "parallel")]
+        let by_threads = work.solves_on_threads() && found.len() > 1;
+        #[cfg(not(feature = "parallel"))]
+        let by_threads = false;
         for members in found.iter() {
             if let Some(outcome) = kept.as_ref().and_then(|kept| kept.restore(&mut self.problem, members)) {
-                outcomes.push(outcome);
+                outcomes.push(Some(outcome));
                 continue;
             }
-            spans.clear();
-            spans.extend(members.iter().map(|i| self.rows.spans[*i]));
-            problem.take_part(&self.problem, members);
-            own.load(if members.len() < MANY || !problem.is_standard() { 0 } else { members.len() }, |k| {
-                keys(&self.rows, model, diagonal, &spans[k])
-            });
-            let sparse = own.contacts() > 0 && {
-                let coupling = problem.sparse_coupling(own);
-                coupling.map(|mut h| couple_into(&mut h, &self.rows, model, work, responses, spans)).is_some()
-            };
-            if !sparse {
-                if found.len() == 1 {
-                    return Ok(None);
-                }
-                couple(&self.rows, model, work, responses, spans, problem);
+            if by_threads {
+                outcomes.push(None);
+                continue;
             }
-            for (k, i) in members.iter().enumerate() {
-                let from = self.extra.partition_point(|(other, _)| other < i);
-                for (_, kappa) in self.extra[from..].iter().take_while(|(other, _)| other == i) {
-                    problem.add_own(k, kappa);
-                }
+            if !self.couple_island(members, found.len() == 1, model, work, responses, coupler, problem) {
+                return Ok(None);
             }
-            let mut outcome = work.solve_problem(problem, over.weight())?;
-            while guard(self, problem, &work.laws, Members::Of(members))? {
-                outcome = join(outcome, work.solve_problem(problem, over.weight())?);
-            }
-            outcome.residual.worst_contact = members.get(outcome.residual.worst_contact).copied().unwrap_or(0);
-            self.problem.put_part(problem, members);
-            outcomes.push(outcome);
+            let outcome = work.solve_problem(problem, over.weight())?;
+            outcomes.push(Some(self.finish_island(members, outcome, work, over, problem, guard)?));
         }
-        if let Some(kept) = kept {
+        #[cfg(feature = "parallel")]
+        if by_threads {
+            self.solve_on_threads(islands, model, work, responses, over, guard)?;
+        }
+        let Islands { found, kept, outcomes, .. } = islands;
+        if let Some(kept) = kept.as_mut().filter(|_| self.extra.is_empty()) {
             kept.keep(&self.contacts, &self.problem, found, outcomes);
         }
-        Ok(outcomes.iter().copied().reduce(together))
+        Ok(outcomes.iter().copied().flatten().reduce(together))
+    }
+
+    /// Solves the islands that have no outcome yet, on the threads of the workspace, and adds theirs.
+    #[cfg(feature = "parallel")]
+    fn solve_on_threads(
+        &mut self,
+        islands: &mut Islands<D>,
+        model: &Model<D>,
+        work: &mut Workspace<D>,
+        responses: &Responses<'_>,
+        over: Over,
+        guard: &mut impl FnMut(&Self, &mut Problem<D>, &Laws<D>, Members<'_>) -> Result<bool, ContactError>,
+    ) -> Result<(), ContactError> {
+        let Islands { coupler, found, outcomes, batch, .. } = islands;
+        let unsolved = (0..found.len()).filter(|island| outcomes[*island].is_none());
+        for job in batch.begin(unsolved, |island| found.members(island).len()) {
+            self.couple_island(found.members(job.island), false, model, work, responses, coupler, &mut job.problem);
+        }
+        work.solve_batch(batch, over.weight());
+        for job in batch.jobs() {
+            let (members, outcome) = (found.members(job.island), job.take_outcome()?);
+            let outcome = self.finish_island(members, outcome, work, over, &mut job.problem, guard)?;
+            outcomes[job.island] = Some(outcome);
+        }
+        Ok(())
+    }
+
+    /// Puts the problem of an island's contacts, with H, into `problem`. `false` if it is the only one and its H is better
+    /// dense: the stage's own problem is that already.
+    #[expect(clippy::too_many_arguments, reason = "an island, what answers for its bodies, and memory")]
+    fn couple_island(
+        &self,
+        members: &[usize],
+        alone: bool,
+        model: &Model<D>,
+        work: &mut Workspace<D>,
+        responses: &Responses<'_>,
+        coupler: &mut Coupler,
+        problem: &mut Problem<D>,
+    ) -> bool {
+        let Coupler { diagonal, own, spans } = coupler;
+        spans.clear();
+        spans.extend(members.iter().map(|i| self.rows.spans[*i]));
+        problem.take_part(&self.problem, members);
+        own.load(if members.len() < MANY || !problem.is_standard() { 0 } else { members.len() }, |k| {
+            keys(&self.rows, model, diagonal, &spans[k])
+        });
+        let sparse = own.contacts() > 0 && {
+            let coupling = problem.sparse_coupling(own);
+            coupling.map(|mut h| couple_into(&mut h, &self.rows, model, work, responses, spans)).is_some()
+        };
+        if !sparse {
+            if alone {
+                return false;
+            }
+            couple(&self.rows, model, work, responses, spans, problem);
+        }
+        for (k, i) in members.iter().enumerate() {
+            let from = self.extra.partition_point(|(other, _)| other < i);
+            for (_, kappa) in self.extra[from..].iter().take_while(|(other, _)| other == i) {
+                problem.add_own(k, kappa);
+            }
+        }
+        true
+    }
+
+    /// Solves a solved island again as often as `guard` wants, and takes its impulses into the stage.
+    fn finish_island(
+        &mut self,
+        members: &[usize],
+        mut outcome: Outcome,
+        work: &mut Workspace<D>,
+        over: Over,
+        problem: &mut Problem<D>,
+        guard: &mut impl FnMut(&Self, &mut Problem<D>, &Laws<D>, Members<'_>) -> Result<bool, ContactError>,
+    ) -> Result<Outcome, ContactError> {
+        while guard(self, problem, &work.laws, Members::Of(members))? {
+            outcome = join(outcome, work.solve_problem(problem, over.weight())?);
+        }
+        outcome.residual.worst_contact = members.get(outcome.residual.worst_contact).copied().unwrap_or(0);
+        self.problem.put_part(problem, members);
+        Ok(outcome)
     }
 }
 

@@ -24,7 +24,7 @@ pub(super) struct Kept<const D: usize> {
     posed: Vec<(Posed<D>, f64)>,
     found: Vec<(Posed<D>, f64, Vector<D>)>,
     /// Of each island, its size and outcome.
-    ended: Vec<(usize, Outcome)>,
+    ended: Vec<(usize, Option<Outcome>)>,
     /// Of each contact of the current attempt, which of these it is.
     was: Vec<usize>,
 }
@@ -69,11 +69,17 @@ impl<const D: usize> Kept<D> {
             (problem.posed[i], problem.mu[i], problem.p[i]) = (posed, mu, p);
             problem.q[i] = posed.u_free + posed.shift;
         }
-        Some(outcome)
+        outcome
     }
 
     /// Keeps what was found of the attempt that was [recognised](Self::recognise), in place of the one before.
-    pub(super) fn keep(&mut self, contacts: &[Contact<D>], problem: &Problem<D>, islands: &Islands, ended: &[Outcome]) {
+    pub(super) fn keep(
+        &mut self,
+        contacts: &[Contact<D>],
+        problem: &Problem<D>,
+        islands: &Islands,
+        ended: &[Option<Outcome>],
+    ) {
         std::mem::swap(&mut self.given, &mut self.posed);
         self.ids.clear();
         self.ids.extend(contacts.iter().map(|contact| contact.id));

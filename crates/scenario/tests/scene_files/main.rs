@@ -27,6 +27,8 @@ mod settings;
 mod shapes;
 mod sides;
 mod stacks;
+#[cfg(feature = "parallel")]
+mod threads;
 mod together;
 mod too_fast;
 mod work;
