@@ -37,6 +37,18 @@ const SINGULAR: f64 = 1e-12;
 /// A contact has at least this part of the largest normal force where friction is shared.
 const LEAST_SHARE: f64 = 1e-6;
 
+/// By how much contacts were corrected, as a part of the largest coordinate and of the largest velocity.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Correction {
+    pub(super) of_places: f64,
+    pub(super) of_velocities: f64,
+}
+
+fn largest_change(before: &[f64], after: &[f64]) -> f64 {
+    let change = before.iter().zip(after).map(|(before, after)| (after - before).abs()).fold(0.0, f64::max);
+    change / before.iter().fold(f64::MIN_POSITIVE, |largest: f64, x| largest.max(x.abs()))
+}
+
 /// The right-hand side.
 #[derive(Debug)]
 pub(super) struct Smooth {
@@ -472,14 +484,14 @@ impl Smooth {
     }
 
     /// Takes what rounding and the error of a step left off places and velocities: gaps go to their
-    /// levels, and contacts don't part or, where they stick, slide. `y` has the impulses it took.
+    /// levels, and contacts don't part or, where they stick, slide. `y` has the impulses it took, and their work.
     pub(super) fn project(
         &mut self,
         model: &Model<2>,
         t: f64,
         y: &mut [f64],
         work: &mut Workspace<2>,
-    ) -> Result<(), StepError> {
+    ) -> Result<Correction, StepError> {
         let (nq, nv, responses) = (model.size().q, model.size().v, Responses::Of(MASSES));
         model.drive_at(t.clamp(self.between[0], self.between[1]), &mut y[nq..nq + nv]);
         self.v.copy_from_slice(&y[nq..nq + nv]);
@@ -490,6 +502,7 @@ impl Smooth {
             let at = self.found.binary_search_by_key(&contact.id, |candidate| candidate.id);
             contact.free[0] = at.map_or(0.0, |at| contact.level - self.found[at].gap);
         }
+        let mut correction = Correction::default();
         if self.contacts.iter().any(|contact| contact.free[0] != 0.0)
             && self.solve(|_| false, |_| 0.0, |contact| contact.free, |_| 1.0)
         {
@@ -498,18 +511,23 @@ impl Smooth {
             self.stage.respond(model, work, &responses, &mut self.a).map_err(problem)?;
             self.q_probe.copy_from_slice(&y[..nq]);
             model.move_along(&self.q_probe, &self.a, 1.0, &mut y[..nq]);
+            correction.of_places = largest_change(&self.q_probe, &y[..nq]);
         }
         if self.solve(|contact| contact.mode == Mode::Stick, |_| 0.0, |contact| -contact.u, |_| 1.0) {
             self.push_with_solution();
+            // What the contacts had of velocities is what they lose.
+            self.v.copy_from_slice(&y[nq..nq + nv]);
             self.stage.respond(model, work, &responses, &mut y[nq..nq + nv]).map_err(problem)?;
             for k in 0..self.contacts.len() {
                 let p = self.contacts[k].row.and_then(|row| self.stage.impulse(row)).unwrap_or_else(Vector::zeros);
                 let first = nq + nv + WORKS + OF_CONTACT * k;
-                y[first] += p[0];
-                y[first + 1] += p[1];
+                let u = self.contacts[k].u;
+                let took = [p[0], p[1], 0.5 * p[0] * u[0], 0.5 * p[1] * u[1]];
+                y[first..first + OF_CONTACT].iter_mut().zip(took).for_each(|(y, took)| *y += took);
             }
+            correction.of_velocities = largest_change(&self.v, &y[nq..nq + nv]);
         }
-        Ok(())
+        Ok(correction)
     }
 
     /// Gives the stage what was solved for.

@@ -1,16 +1,19 @@
 //! An impact: places stand still, velocities jump.
 
-use super::{MASSES, MoreauJeanLocated};
+use super::{MASSES, MoreauJeanLocated, rate_at};
 use crate::closed_step::{leaves, restitute};
 use crate::laws::is_impact;
 use crate::{
     ContactError, Keep, Mismatch, Model, Over, PhaseEnd, PhaseKind, Responses, Rule, State, StepError, Vector,
     Workspace,
 };
-use teeter_detect::Candidate;
+use teeter_detect::{BodyId, Candidate};
 
 /// Contacts with a gap of up to so many tolerances touch.
 const TOUCHING: f64 = 10.0;
+
+/// Closed contacts drift by no more than is passed in this part of the scheme's step.
+const HIDDEN: f64 = 0.1;
 
 impl<const D: usize> MoreauJeanLocated<D> {
     /// Lets the contacts that touch at `from` strike, at time `end` (s): its velocities and what is
@@ -58,8 +61,26 @@ impl<const D: usize> MoreauJeanLocated<D> {
     /// Takes the contacts that touch into the stage: those that were closed up to here, and those
     /// that are near.
     fn find_what_touches(&mut self, model: &Model<D>, from: &State, work: &mut Workspace<D>) -> Result<(), Mismatch> {
-        work.detect(model, &from.q, TOUCHING * self.tolerance(&from.q))?;
+        let touching = TOUCHING * self.tolerance(&from.q);
         work.locate(model, &from.q, &self.step.closed, &mut self.near)?;
+        work.detect(model, &from.q, touching)?;
+        let hidden = self.hidden_time(model, from, work)?;
+        if hidden > 0.0 {
+            // Two bodies may approach each other; a beam is not faster than what rocks on it.
+            let reach = 2.0 * hidden * self.fastest(model, &from.v);
+            work.detect(model, &from.q, touching.max(reach))?;
+            let (mut candidates, mut kept) = (std::mem::take(&mut work.candidates), 0);
+            for k in 0..candidates.len() {
+                let candidate = candidates[k];
+                let is_near = candidate.gap <= touching;
+                if is_near || -rate_at(&mut self.one, model, &from.q, &candidate, &from.v)? * hidden >= candidate.gap {
+                    candidates[kept] = candidate;
+                    kept += 1;
+                }
+            }
+            candidates.truncate(kept);
+            work.candidates = candidates;
+        }
         let Self { impact, near, .. } = self;
         impact.clear();
         let mut add = |candidate: &Candidate<D>| -> Result<(), Mismatch> {
@@ -77,6 +98,33 @@ impl<const D: usize> MoreauJeanLocated<D> {
             add(candidate)?;
         }
         closed.try_for_each(add)
+    }
+
+    /// The time (s) to which it is known when the candidates that strike touch: what the closed contacts of their bodies have drifted
+    /// from their surfaces, over the velocity with which they approach; 0 where that is within the tolerance.
+    ///
+    /// Whatever else touches within that time may do so now. Points on one line under a base land together; with a pivot that has
+    /// sunk in by some nanometres the nearer ones would land first, and share a blow that is the last one's.
+    fn hidden_time(&mut self, model: &Model<D>, from: &State, work: &Workspace<D>) -> Result<f64, Mismatch> {
+        let touching = TOUCHING * self.tolerance(&from.q);
+        let moves = |body: BodyId| model.owner(body).is_some_and(|(_, part, _)| part.row > 0 && !part.is_prescribed());
+        let mut hidden = 0.0_f64;
+        for candidate in &work.candidates {
+            let shares = |closed: &&Candidate<D>| {
+                let mut bodies = candidate.sides.iter().map(|side| side.body).filter(|body| moves(*body));
+                bodies.any(|body| closed.sides.iter().any(|side| side.body == body))
+            };
+            let drift = self.near.iter().filter(shares).map(|closed| closed.gap.abs()).fold(0.0, f64::max);
+            if drift <= touching || self.step.closed.binary_search(&candidate.id).is_ok() {
+                continue;
+            }
+            let rate = rate_at(&mut self.one, model, &from.q, candidate, &from.v)?;
+            if leaves(-rate, || self.one.speed(0, &from.v)) {
+                hidden = hidden.max(drift / -rate);
+            }
+        }
+        // More is not drift.
+        Ok(if hidden <= HIDDEN * from.dt { hidden } else { 0.0 })
     }
 
     /// Gives each contact its law.

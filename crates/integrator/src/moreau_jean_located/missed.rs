@@ -165,7 +165,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
     }
 
     /// A speed that no point of what isn't elastic exceeds, m/s.
-    fn fastest(&self, model: &Model<D>, v: &[f64]) -> f64 {
+    pub(super) fn fastest(&self, model: &Model<D>, v: &[f64]) -> f64 {
         let parts = model.parts().iter().zip(&self.elastic).filter(|(_, elastic)| !**elastic);
         parts.map(|(part, _)| part.system.fastest(&v[part.v.clone()])).fold(0.0, f64::max)
     }

@@ -7,7 +7,7 @@ use teeter_scenario::simulation::Simulation;
 /// Columns of unequal width, which slide, rock and fall apart on shaken ground; a column is an island, and one of them, of many
 /// blocks, takes longer than the rest.
 fn columns(law: &str) -> String {
-    let mut text = "[time]\nend = '0.6 s'\nstep = '2 ms'\nscheme = 'moreau-jean'\n[ground]\nmotion = { acceleration = ['4 m/s^2', '0 m/s^2'], signal = 'shake' }\n\
+    let mut text = "[time]\nend = '0.2 s'\nstep = '2 ms'\nscheme = 'moreau-jean'\n[ground]\nmotion = { acceleration = ['4 m/s^2', '0 m/s^2'], signal = 'shake' }\n\
          [signal.shake]\nshape = 'one-sine'\nperiod = '0.4 s'\n[material.m]\ndensity = '2700 kg/m^3'\n"
         .to_owned();
     for k in 0..18 {
@@ -37,7 +37,7 @@ fn any_number_of_threads_leads_to_the_same_bits() {
     for law in ["", "restitution = 0.4\nlaw = 'poisson'", "restitution = 0.4\nlaw = 'energetic'"] {
         let text = columns(law);
         let alone = end(&text, 1);
-        for threads in [2, 3, 8] {
+        for threads in [2, 5] {
             let together = end(&text, threads);
             assert_eq!(together.1, alone.1, "{law}, {threads} threads");
             assert!(together.0 == alone.0, "{law}, {threads} threads");
