@@ -101,7 +101,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
     }
 
     /// The time (s) to which it is known when the candidates that strike touch: what the closed contacts of their bodies have drifted
-    /// from their surfaces, over the velocity with which they approach; 0 where that is within the tolerance.
+    /// from their surfaces, over the velocity with which they approach; 0 without any.
     ///
     /// Whatever else touches within that time may do so now. Points on one line under a base land together; with a pivot that has
     /// sunk in by some nanometres the nearer ones would land first, and share a blow that is the last one's.
@@ -115,12 +115,12 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 bodies.any(|body| closed.sides.iter().any(|side| side.body == body))
             };
             let drift = self.near.iter().filter(shares).map(|closed| closed.gap.abs()).fold(0.0, f64::max);
-            if drift <= touching || self.step.closed.binary_search(&candidate.id).is_ok() {
+            if drift == 0.0 || self.step.closed.binary_search(&candidate.id).is_ok() {
                 continue;
             }
             let rate = rate_at(&mut self.one, model, &from.q, candidate, &from.v)?;
             if leaves(-rate, || self.one.speed(0, &from.v)) {
-                hidden = hidden.max(drift / -rate);
+                hidden = hidden.max(drift.max(touching) / -rate);
             }
         }
         // More is not drift.
