@@ -75,6 +75,9 @@ const STRAIGHT: f64 = 1e-12;
 const PAST_A_VALLEY: f64 = 1e-3;
 const PAST_A_CREST: f64 = 1e-9;
 
+/// A corner's distance from a piece is known to this part of the coordinates.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// What lies along a piece beside a crest still touches the crest, up to this angle, rad.
 const ALONG: f64 = 1e-9;
 
@@ -242,6 +245,8 @@ impl Over<'_> {
         let pieces = profile.pieces_between(place.x - reach, place.x + reach);
         let height = |piece: usize| profile.pieces[piece].height(place);
         let over = |piece: &usize| profile.room(*piece, profile.pieces[*piece].along(place)) >= 0.0;
+        // A corner on a piece may be above the ground by its coordinates and below the piece by its distance.
+        let rounding = ROUNDING * pieces.clone().fold(place.amax(), |most, piece| most.max(profile.pieces[piece].origin.amax()));
         let nearest = if below > 0.0 {
             pieces.clone().filter(over).max_by(|a, b| height(*a).total_cmp(&height(*b)))
         } else {
@@ -249,7 +254,7 @@ impl Over<'_> {
         };
         for piece in pieces.filter(over) {
             let counts = match nearest {
-                None => height(piece) >= 0.0,
+                None => height(piece) >= -rounding,
                 Some(nearest) => {
                     let meet = nearest.abs_diff(piece) == 1 && profile.joints[nearest.min(piece)].bend == Bend::Valley;
                     piece == nearest || meet

@@ -109,7 +109,7 @@ pub struct MoreauJeanLocated<const D: usize> {
     has_elastic: bool,
     /// Whether any contact may be without something elastic.
     has_rigid_pairs: bool,
-    /// Whether more contacts struck in the step than are located.
+    /// Whether more contacts struck in the step than are located, or one wasn't found where it was located.
     unlocated: bool,
 }
 
@@ -299,6 +299,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         work: &mut Workspace<D>,
     ) -> Result<f64, StepError> {
         let (mut left, mut impacts, mut struck) = (span.h, 0, true);
+        self.unlocated = false;
         loop {
             let rest = StepSpan { start: from.t, end: span.end, h: left };
             self.step.begin(model, from, &rest, work)?;
@@ -308,21 +309,22 @@ impl<const D: usize> MoreauJeanLocated<D> {
                     *by_forces = free - v0;
                 }
             }
-            self.unlocated = impacts == Self::MOST_IMPACTS;
-            let (outcome, found) = if self.unlocated || !struck {
+            let too_many = impacts == Self::MOST_IMPACTS;
+            self.unlocated |= too_many || !struck;
+            let (outcome, found) = if too_many || !struck {
                 (self.step.settle(model, from, &rest, work)?, None)
             } else {
                 self.locate(model, from, &rest, work)?
             };
             // Up to the end, or to the next impact, a slide may stop.
             let reached = found.map_or(rest, |tau| StepSpan { end: from.t + tau, h: tau, ..rest });
-            let (outcome, stops) = match self.unlocated {
+            let (outcome, stops) = match too_many {
                 true => (outcome, None),
                 false => self.find_stop(model, from, &reached, outcome, work)?,
             };
             // A contact may come to the end of its surface before.
             let attempted = stops.map_or(reached, |tau| StepSpan { end: from.t + tau, h: tau, ..rest });
-            let (outcome, leaves) = match self.unlocated {
+            let (outcome, leaves) = match too_many {
                 true => {
                     self.find_what_leaves(model, rest.h, work)?;
                     (outcome, None)
