@@ -246,7 +246,8 @@ impl Over<'_> {
         let height = |piece: usize| profile.pieces[piece].height(place);
         let over = |piece: &usize| profile.room(*piece, profile.pieces[*piece].along(place)) >= 0.0;
         // A corner on a piece may be above the ground by its coordinates and below the piece by its distance.
-        let rounding = ROUNDING * pieces.clone().fold(place.amax(), |most, piece| most.max(profile.pieces[piece].origin.amax()));
+        let rounding =
+            ROUNDING * pieces.clone().fold(place.amax(), |most, piece| most.max(profile.pieces[piece].origin.amax()));
         let nearest = if below > 0.0 {
             pieces.clone().filter(over).max_by(|a, b| height(*a).total_cmp(&height(*b)))
         } else {

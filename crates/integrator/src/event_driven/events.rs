@@ -104,10 +104,9 @@ impl EventDriven {
             let (q, v) = self.y[..size.q + size.v].split_at(size.q);
             let [before, after] = [model.energy_at(&from.q, &from.v), model.energy_at(q, v)];
             let taken = self.smooth.energy(model, &self.y);
-            self.projected = (after.kinetic - before.kinetic)
-                + (after.elastic - before.elastic)
-                + (after.gravity - before.gravity)
-                - (taken.contact + taken.friction);
+            self.projected =
+                (after.kinetic - before.kinetic) + (after.elastic - before.elastic) + (after.gravity - before.gravity)
+                    - (taken.contact + taken.friction);
         }
         self.smooth.slope(model, from.t, &self.y, work, self.rk.first_slope())?;
         for contact in &mut self.smooth.contacts {

@@ -306,3 +306,22 @@ fn a_crest_that_starts_inside_a_block_is_refused_however_deep() {
         }
     }
 }
+
+/// Where a corner touches a slope, rounding may have it above the ground and inside the slope's line: its blow was lost, and it
+/// rested as deep as the step was long.
+#[test]
+fn blows_in_a_valley_are_located_whatever_rounding_says() {
+    for x in ["-0.6469", "-0.2449", "-0.6259"] {
+        let text = format!(
+            "[time]\nend = '0.6 s'\nstep = '4 ms'\nscheme = 'moreau-jean-located'\n\
+             [ground]\nprofile = {{ points = [['-1 m', '0.2 m'], ['0 m', '0 m'], ['1 m', '0 m']] }}\n\
+             [block.b]\ndensity = '500 kg/m^3'\nwidth = '7 cm'\nheight = '10 cm'\ndepth = '10 cm'\nposition = ['{x} m', '0.5 m']\n\
+             angle = '-20 deg'\nvelocity = ['2 m/s', '0 m/s']\n[contact.c]\nbetween = ['b', 'ground']\nfriction = 0.5\n"
+        );
+        let mut simulation = Simulation::new(&resolved(&text).scene).unwrap();
+        assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+        let tally = &simulation.state.tally;
+        assert_eq!(tally.unlocated_steps, 0, "{x}");
+        assert!(tally.max_penetration < 2e-5, "{x}: {:e} m deep", tally.max_penetration);
+    }
+}

@@ -18,7 +18,9 @@ fn columns(law: &str) -> String {
             10 * k
         );
     }
-    text + &format!("[contact.all]\nbetween = ['*', '*']\nfriction = 0.3\n{law}\n[contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.6\n{law}\n")
+    text + &format!(
+        "[contact.all]\nbetween = ['*', '*']\nfriction = 0.3\n{law}\n[contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.6\n{law}\n"
+    )
 }
 
 /// The state at the end, bit by bit, and the work that led there.
