@@ -78,7 +78,8 @@ const FACING: f64 = -0.25;
 pub const MOST_SUMMITS: usize = 8;
 
 /// A side of a part in the world.
-struct PlacedSide {
+struct PlacedSide<'a> {
+    outline: Outline<'a>,
     /// Its number.
     side: usize,
     local: [Vector<2>; 2],
@@ -116,12 +117,14 @@ pub(crate) fn each(
             continue;
         }
         for (which, end) in ends.iter().enumerate().filter_map(|(which, end)| Some((which, (*end)?))) {
-            if let Some(touch) = side.touch(OnSide::End(which), &end).filter(|touch| touch.room >= 0.0) {
+            let touch = side.touch(OnSide::End(which), &end).filter(|touch| touch.room >= 0.0);
+            if let Some(touch) = touch.filter(|touch| touch.gap >= 0.0 || side.holds(&end.place)) {
                 push(&touch, margin, &mut each);
             }
         }
         for (which, summit) in Summits::of(&side, pair, at).iter().enumerate() {
-            if let Some(touch) = side.touch(OnSide::Summit(which), summit) {
+            let touch = side.touch(OnSide::Summit(which), summit);
+            if let Some(touch) = touch.filter(|touch| touch.gap >= 0.0 || side.holds(&summit.place)) {
                 push(&touch, margin, &mut each);
             }
         }
@@ -201,7 +204,7 @@ struct Summits {
 }
 
 impl Summits {
-    fn of(side: &PlacedSide, pair: &SidePair, at: &dyn Geometry<2>) -> Self {
+    fn of(side: &PlacedSide<'_>, pair: &SidePair, at: &dyn Geometry<2>) -> Self {
         let direction = -side.normal;
         let along_side = side.ends[1] - side.ends[0];
         let length = along_side.norm();
@@ -235,7 +238,15 @@ impl Summits {
     }
 }
 
-impl PlacedSide {
+impl PlacedSide<'_> {
+    /// Whether the part is there: of what is below the side's line but past another side, all of the part lies between. A
+    /// block that tips over the end of a beam turns its far side to it.
+    fn holds(&self, place: &Vector<2>) -> bool {
+        let Outline { corners, normals, radius, frame, .. } = &self.outline;
+        let local = frame.local(place);
+        corners.iter().zip(*normals).all(|(corner, normal)| normal.dot(&(local - corner)) <= *radius)
+    }
+
     /// The contact of a point of the surface with the side's line; `None` if the side faces away
     /// from it, or it isn't finite.
     fn touch(&self, feature: OnSide, point: &SurfacePoint<2>) -> Option<Touch> {
@@ -255,7 +266,7 @@ impl PlacedSide {
 }
 
 /// The sides of all parts of a member that have any.
-fn sides<'a>(shapes: &'a Shapes, member: usize, frame: &'a BodyFrame) -> impl Iterator<Item = PlacedSide> + 'a {
+fn sides<'a>(shapes: &'a Shapes, member: usize, frame: &'a BodyFrame) -> impl Iterator<Item = PlacedSide<'a>> + 'a {
     shapes.members[member].parts.clone().flat_map(move |part| {
         let outline = shapes.outline(part, *frame);
         let corners = outline.corners;
@@ -264,6 +275,7 @@ fn sides<'a>(shapes: &'a Shapes, member: usize, frame: &'a BodyFrame) -> impl It
             let local = [corners[k], corners[(k + 1) % corners.len()]];
             let normal = outline.normals[k];
             PlacedSide {
+                outline,
                 side: outline.first + k,
                 local,
                 ends: local.map(|corner| frame.point(&corner)),

@@ -1,6 +1,6 @@
 //! Contacts of bodies that stand apart, solved on several threads.
 
-use teeter_integrator::WorkCounts;
+use teeter_integrator::{Ended, WorkCounts};
 use teeter_scenario::load;
 use teeter_scenario::simulation::Simulation;
 
@@ -29,7 +29,7 @@ fn end(text: &str, threads: usize) -> (Vec<u64>, WorkCounts) {
     let scene = resolved.unwrap_or_else(|errors| panic!("{errors}\n{text}")).scene;
     let mut simulation = Simulation::new(&scene).unwrap();
     simulation.set_threads(threads);
-    simulation.run(&mut []).unwrap();
+    assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
     let state = &simulation.state;
     (state.q.iter().chain(&state.v).map(|x| x.to_bits()).collect(), simulation.work_counts())
 }
