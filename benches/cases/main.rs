@@ -13,6 +13,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use teeter_integrator::Ended;
 use teeter_scenario::simulation::Simulation;
 use teeter_study::sweep::{Sweep, run_cases};
 use teeter_study::{Setting, StudyScene};
@@ -32,10 +33,10 @@ const SUMMARY: &str = "overturned_at = 'overturned_at'\nlargest = 'max_phi_over_
 const COLUMN: &str = "largest = { max_abs = 'rocker.phi' }";
 
 const STUDIES: [Study; 6] = [
-    ("ground, summary", "block-on-ground", "10 ms", ["contact.feet.friction", "0.3", "0.6"], SUMMARY),
-    ("ground, column", "block-on-ground", "10 ms", ["contact.feet.friction", "0.3", "0.6"], COLUMN),
-    ("ground, size", "block-on-ground", "10 ms", ["block.rocker.height", "'12 cm'", "'15 cm'"], SUMMARY),
-    ("one sine", "block-under-one-sine", "40 ms", ["signal.shake.scale", "0.5", "0.9"], SUMMARY),
+    ("ground, friction", "block-on-ground", "10 ms", ["contact.feet.friction", "0.3", "0.6"], SUMMARY),
+    ("ground, friction; a column", "block-on-ground", "10 ms", ["contact.feet.friction", "0.3", "0.6"], COLUMN),
+    ("ground, height", "block-on-ground", "10 ms", ["block.rocker.height", "'12 cm'", "'15 cm'"], SUMMARY),
+    ("one sine, scale", "block-under-one-sine", "40 ms", ["signal.shake.scale", "0.5", "0.9"], SUMMARY),
     ("beam, friction", "block-on-beam", "10 ms", ["contact.feet.friction", "0.3", "0.6"], SUMMARY),
     ("beam, thickness", "block-on-beam", "10 ms", ["beam.table.thickness", "'0.15 cm'", "'0.2 cm'"], SUMMARY),
 ];
@@ -102,8 +103,11 @@ fn time_of_steps(sweep: &Sweep, source: &StudyScene) -> Result<(f64, u64)> {
         let resolved = source.load(&setting).map_err(|found| found.to_string())?;
         let mut simulation = Simulation::new(&resolved.scene)?;
         let clock = ProcessTime::now();
-        simulation.run(&mut [])?;
+        let ended = simulation.run(&mut [])?;
         seconds += clock.elapsed().as_secs_f64();
+        if ended != Ended::Complete {
+            return Err(format!("case {number}: {ended:?}").into());
+        }
         steps = simulation.state.step;
     }
     Ok((1e6 * seconds / sweep.cases() as f64, steps))

@@ -139,8 +139,8 @@ impl ParsedScene {
         resolve::resolve(document, stem, read).map_err(|found| in_order(found, sets))
     }
 
-    /// The scene alone, as [`Self::load`] finds it, for a study of many of them: warnings and notes are left out, and records are
-    /// taken from `shared` if an earlier scene has read them.
+    /// The scene alone, as [`Self::load`] finds it, for a study of many of them: warnings and notes are left out, and what earlier
+    /// scenes of this text and the same files have in common with it is taken from `shared`.
     ///
     /// # Errors
     /// As [`load_with`].
@@ -148,10 +148,10 @@ impl ParsedScene {
         &self,
         stem: &str,
         sets: &[(String, String)],
-        shared: &resolve::SharedRecords,
+        shared: &resolve::SharedParts,
         read: &mut resolve::ReadFile<'_>,
     ) -> Result<scene::Scene, diagnostic::Diagnostics> {
-        let document = self.document(sets, read)?;
+        let document = shared.document(sets, || self.document(sets, read))?;
         resolve::scene(&document, stem, shared, read).map_err(|found| in_order(found, sets))
     }
 

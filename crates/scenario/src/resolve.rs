@@ -37,7 +37,7 @@ use crate::{output_size, quantity, wording};
 use teeter_contact::Law;
 use teeter_solvers::SOLVERS;
 
-pub use shared::SharedRecords;
+pub use shared::SharedParts;
 pub use timing::MAX_STEPS;
 
 /// A resolved scene with its findings.
@@ -117,11 +117,11 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
 }
 
 /// The scene of a document alone, as [`resolve`] finds it: without warnings and notes, which a study doesn't show and which take
-/// longer than the scene itself, and without the document. `shared` has records of the same files.
+/// longer than the scene itself, and without what only a written document needs. `shared` has records of the same files.
 pub(crate) fn scene(
     document: &Document,
     stem: &str,
-    shared: &SharedRecords,
+    shared: &SharedParts,
     read: &mut ReadFile<'_>,
 ) -> Result<Scene, Diagnostics> {
     let mut resolver = Resolver::new(document, false, Some(shared), read);
@@ -175,7 +175,7 @@ struct Resolver<'a, 'f> {
     /// The files read so far.
     files: Vec<(String, Vec<u8>)>,
     /// Records of earlier scenes.
-    shared: Option<&'a SharedRecords>,
+    shared: Option<&'a SharedParts>,
     doc: &'a Document,
     /// Whether values are missing for which there is already a message.
     partial: bool,
@@ -202,7 +202,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
     fn new(
         doc: &'a Document,
         partial: bool,
-        shared: Option<&'a SharedRecords>,
+        shared: Option<&'a SharedParts>,
         read: &'f mut ReadFile<'f>,
     ) -> Self {
         let numbered = |group| doc.names(group).into_iter().zip(0..).collect();

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use teeter_scenario::ParsedScene;
 use teeter_scenario::diagnostic::Diagnostics;
-use teeter_scenario::resolve::{ReadFile, Resolved, SharedRecords};
+use teeter_scenario::resolve::{ReadFile, Resolved, SharedParts};
 use teeter_scenario::scene::Scene;
 
 /// A scene in memory.
@@ -18,7 +18,7 @@ pub struct StudyScene {
     stem: String,
     sets: Vec<(String, String)>,
     files: BTreeMap<String, Vec<u8>>,
-    shared: Arc<SharedRecords>,
+    shared: Arc<SharedParts>,
 }
 
 impl StudyScene {

@@ -1,6 +1,8 @@
-//! Records that the scenes of a study have in common: read and corrected once.
+//! What the scenes of a study have in common: the document but for some numbers, and records, read and corrected once.
 
 use super::records::Scaling;
+use crate::diagnostic::Diagnostics;
+use crate::document::Document;
 use crate::scene::RecordScene;
 use std::sync::{Arc, Mutex, PoisonError};
 use teeter_record::Record;
@@ -12,9 +14,11 @@ const MOST_VALUES: usize = 4_000_000;
 /// Records held at most, as they are searched one by one.
 const MOST_RECORDS: usize = 256;
 
-/// What one scene after another reads from the same files, held for the next one. Its files must not change.
+/// What one scene after another is made of, held for the next one. Their text and files must be the same.
 #[derive(Debug, Default)]
-pub struct SharedRecords {
+pub struct SharedParts {
+    /// That of an earlier scene.
+    document: Mutex<Option<Arc<Document>>>,
     corrected: Mutex<Held<RecordKeys, Record>>,
     used: Mutex<Held<(RecordKeys, Placed), RecordScene>>,
 }
@@ -40,7 +44,23 @@ pub(super) struct RecordKeys {
 /// The table that names a record, and how it scales it.
 type Placed = (String, Option<(&'static str, Scaling)>);
 
-impl SharedRecords {
+impl SharedParts {
+    /// The document with these settings: an earlier one with other numbers if that is all they change, or made now.
+    pub(crate) fn document(
+        &self,
+        sets: &[(String, String)],
+        make: impl FnOnce() -> Result<Document, Diagnostics>,
+    ) -> Result<Arc<Document>, Diagnostics> {
+        let lock = || self.document.lock().unwrap_or_else(PoisonError::into_inner);
+        let earlier = lock().clone();
+        if let Some(document) = earlier.and_then(|document| document.with_numbers(sets)) {
+            return Ok(Arc::new(document));
+        }
+        let document = Arc::new(make()?);
+        *lock() = Some(Arc::clone(&document));
+        Ok(document)
+    }
+
     /// The record as corrected, from earlier or made now.
     pub(super) fn corrected(&self, keys: &RecordKeys, make: impl FnOnce() -> Option<Record>) -> Option<Arc<Record>> {
         Held::find_or(&self.corrected, keys, make, Record::len)

@@ -196,9 +196,12 @@ fn run_once(
         EndedWord::Complete | EndedWord::Stopped => String::new(),
         _ => Failure::unless_complete(ended, state.t).err().map_or_else(String::new, |error| error.to_string()),
     };
+    let mut paths = sweep.outputs().iter().filter_map(Output::summary_path).peekable();
     // Columns need none.
-    let summary = if sweep.outputs().iter().any(|output| output.summary_path().is_some()) {
-        match serde_json::to_value(Summary::new(&scene, &layout, state, &record, word, 0.0)) {
+    let summary = if paths.peek().is_some() {
+        let of_records = paths.any(|path| path.split('.').next() == Some("records"));
+        let summary = if of_records { Summary::new } else { Summary::without_records };
+        match serde_json::to_value(summary(&scene, &layout, state, &record, word, 0.0)) {
             Ok(summary) => summary,
             Err(error) => return failed(error.to_string()),
         }
