@@ -199,12 +199,7 @@ struct Unheld {
 }
 
 impl<'a, 'f> Resolver<'a, 'f> {
-    fn new(
-        doc: &'a Document,
-        partial: bool,
-        shared: Option<&'a SharedParts>,
-        read: &'f mut ReadFile<'f>,
-    ) -> Self {
+    fn new(doc: &'a Document, partial: bool, shared: Option<&'a SharedParts>, read: &'f mut ReadFile<'f>) -> Self {
         let numbered = |group| doc.names(group).into_iter().zip(0..).collect();
         let block_names = BlockName::all(doc);
         let mut errors = Vec::new();

@@ -37,7 +37,17 @@ impl StudyScene {
         let parsed = ParsedScene::new(&bytes, name)?;
         let resolved = parsed.load(stem, sets, read)?;
         let files = resolved.files.iter().cloned().collect();
-        Ok((Self { bytes, parsed: Ok(parsed), stem: stem.to_owned(), sets: sets.to_vec(), files, shared: Arc::default() }, resolved))
+        Ok((
+            Self {
+                bytes,
+                parsed: Ok(parsed),
+                stem: stem.to_owned(),
+                sets: sets.to_vec(),
+                files,
+                shared: Arc::default(),
+            },
+            resolved,
+        ))
     }
 
     /// A scene that is run with many settings, some of which name files: all files that the scene
