@@ -297,6 +297,13 @@ impl<'a> Recorder<'a> {
 
     fn write_row(&mut self, state: &State) -> Result<(), ResultsError> {
         self.warn_of_row(state);
+        if self.trajectory.takes_rows() {
+            self.write_trajectory_row(state)?;
+        }
+        if self.energy.takes_rows() { self.write_energy_row(state) } else { Ok(()) }
+    }
+
+    fn write_trajectory_row(&mut self, state: &State) -> Result<(), ResultsError> {
         self.line.clear();
         push(&mut self.line, state.t);
         for block in &self.layout.blocks {
@@ -316,8 +323,10 @@ impl<'a> Recorder<'a> {
             driven.values(state).into_iter().for_each(|x| push_next(&mut self.line, x));
         }
         self.line.push('\n');
-        self.trajectory.rows(&self.line)?;
+        self.trajectory.rows(&self.line)
+    }
 
+    fn write_energy_row(&mut self, state: &State) -> Result<(), ResultsError> {
         self.line.clear();
         push(&mut self.line, state.t);
         let (now, sum) = (&state.ledger.current, &state.ledger.sum);

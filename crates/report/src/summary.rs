@@ -352,6 +352,20 @@ impl Summary {
         ended: EndedWord,
         wall_seconds: f64,
     ) -> Self {
+        let records = scene.records().map(|of| RecordSummary::new(of)).collect();
+        Self { records, ..Self::without_records(scene, layout, state, record, ended, wall_seconds) }
+    }
+
+    /// As [`Self::new`] without the measures of its accelerograms, which take longer to find than all else of a short run.
+    #[must_use]
+    pub fn without_records(
+        scene: &Scene,
+        layout: &Layout,
+        state: &State,
+        record: &Record,
+        ended: EndedWord,
+        wall_seconds: f64,
+    ) -> Self {
         let (ledger, tally) = (&state.ledger, &state.tally);
         let monitored = || layout.blocks.iter().zip(&record.rocking);
         let mut crossings: Vec<CrossingRow> = monitored()
@@ -429,7 +443,7 @@ impl Summary {
             beams,
             deflections,
             verdict,
-            records: scene.records().map(|of| RecordSummary::new(of)).collect(),
+            records: Vec::new(),
             horizon: record.horizon,
             ended,
             model: ModelSummary::new(scene, layout),

@@ -34,6 +34,11 @@ impl Table {
         Self { in_memory: true, ..Self::nowhere() }
     }
 
+    /// Whether its rows go anywhere, so that they are worth writing.
+    pub(crate) fn takes_rows(&self) -> bool {
+        self.in_memory || self.file.is_some()
+    }
+
     /// The rows of a table in memory.
     pub(crate) fn kept(&self) -> &[u8] {
         if self.in_memory { &self.buffer } else { &[] }

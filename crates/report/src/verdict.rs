@@ -317,7 +317,7 @@ impl Fates {
             if seen.began.is_some() {
                 seen.stance = KnownStance(Some(stance));
             }
-            if let Some(stance) = stance {
+            if let Some(mut stance) = stance {
                 let slope = watched.carrier.slope(&state.q);
                 if let Some(part) = stance.part(q[2], slope) {
                     seen.part = Some(seen.part.map_or(part, |most| most.max(part)));
@@ -333,8 +333,11 @@ impl Fates {
                         let share = if from < 0.0 { from / (from - to) } else { 1.0 };
                         seen.beyond = Some((before + share * (t - before), way));
                     }
-                    let way_down = way.sign() * (edge.lies + slope - edge.top);
-                    seen.fallen |= past(q[2]) >= FALLEN * way_down;
+                    let lies = edge.lies.or_else(|| watched.outline.as_ref()?.lies(edge, way));
+                    stance.edge_mut(way).lies = lies;
+                    seen.stance = KnownStance(Some(Some(stance)));
+                    let way_down = lies.map(|lies| way.sign() * (lies + slope - edge.top));
+                    seen.fallen |= way_down.is_some_and(|way_down| past(q[2]) >= FALLEN * way_down);
                 }
             }
             seen.angle = q[2];

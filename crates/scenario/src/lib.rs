@@ -135,12 +135,35 @@ impl ParsedScene {
         sets: &[(String, String)],
         read: &mut resolve::ReadFile<'_>,
     ) -> Result<resolve::Resolved, diagnostic::Diagnostics> {
+        let document = self.document(sets, read)?;
+        resolve::resolve(document, stem, read).map_err(|found| in_order(found, sets))
+    }
+
+    /// The scene alone, as [`Self::load`] finds it, for a study of many of them: warnings and notes are left out, and what earlier
+    /// scenes of this text and the same files have in common with it is taken from `shared`.
+    ///
+    /// # Errors
+    /// As [`load_with`].
+    pub fn scene(
+        &self,
+        stem: &str,
+        sets: &[(String, String)],
+        shared: &resolve::SharedParts,
+        read: &mut resolve::ReadFile<'_>,
+    ) -> Result<scene::Scene, diagnostic::Diagnostics> {
+        let document = shared.document(sets, || self.document(sets, read))?;
+        resolve::scene(&document, stem, shared, read).map_err(|found| in_order(found, sets))
+    }
+
+    /// The document with these settings; otherwise everything that is wrong with the scene.
+    fn document(
+        &self,
+        sets: &[(String, String)],
+        read: &mut resolve::ReadFile<'_>,
+    ) -> Result<document::Document, diagnostic::Diagnostics> {
         let decode::Decoded { document, mut found, whole } = self.0.decode(sets);
         if !found.has_errors() {
-            return resolve::resolve(document, stem, read).map_err(|mut found| {
-                decode::in_order(&mut found, sets);
-                found
-            });
+            return Ok(document);
         }
         // Not if a part could not be read, as the rest may refer to it.
         if whole {
@@ -152,6 +175,11 @@ impl ParsedScene {
         }
         Err(found)
     }
+}
+
+fn in_order(mut found: diagnostic::Diagnostics, sets: &[(String, String)]) -> diagnostic::Diagnostics {
+    decode::in_order(&mut found, sets);
+    found
 }
 
 /// One message instead of all that is wrong with a sweep file, read as a scene.

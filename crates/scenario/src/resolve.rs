@@ -18,6 +18,7 @@ mod outlines;
 mod records;
 mod sections;
 mod shape;
+mod shared;
 mod signals;
 mod supports;
 mod timing;
@@ -36,6 +37,7 @@ use crate::{output_size, quantity, wording};
 use teeter_contact::Law;
 use teeter_solvers::SOLVERS;
 
+pub use shared::SharedParts;
 pub use timing::MAX_STEPS;
 
 /// A resolved scene with its findings.
@@ -64,7 +66,7 @@ pub type ReadFile<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 /// # Errors
 /// All errors at once.
 pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> Result<Resolved, Diagnostics> {
-    let mut resolver = Resolver::new(&document, false, read);
+    let mut resolver = Resolver::new(&document, false, None, read);
     let scene = resolver.scene(stem);
     resolver.report_unheld(scene.as_ref());
     let (mut errors, mut warnings, files) = (resolver.errors, resolver.warnings, resolver.files);
@@ -114,10 +116,31 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
     Err(diagnostics)
 }
 
+/// The scene of a document alone, as [`resolve`] finds it: without warnings and notes, which a study doesn't show and which take
+/// longer than the scene itself, and without what only a written document needs. `shared` has records of the same files.
+pub(crate) fn scene(
+    document: &Document,
+    stem: &str,
+    shared: &SharedParts,
+    read: &mut ReadFile<'_>,
+) -> Result<Scene, Diagnostics> {
+    let mut resolver = Resolver::new(document, false, Some(shared), read);
+    let scene = resolver.scene(stem);
+    resolver.report_unheld(scene.as_ref());
+    match scene {
+        Some(scene) if resolver.errors.is_empty() => Ok(scene),
+        _ => {
+            let mut diagnostics = Diagnostics(resolver.errors);
+            diagnostics.sort();
+            Err(diagnostics)
+        }
+    }
+}
+
 /// Errors about several keys in a document of which some values were already refused; these are not
 /// reported again.
 pub(crate) fn mistakes(document: &Document, read: &mut ReadFile<'_>) -> Vec<Diagnostic> {
-    let mut resolver = Resolver::new(document, true, read);
+    let mut resolver = Resolver::new(document, true, None, read);
     let scene = resolver.scene("");
     resolver.report_unheld(scene.as_ref());
     resolver.errors
@@ -151,6 +174,8 @@ struct Resolver<'a, 'f> {
     read: &'f mut ReadFile<'f>,
     /// The files read so far.
     files: Vec<(String, Vec<u8>)>,
+    /// Records of earlier scenes.
+    shared: Option<&'a SharedParts>,
     doc: &'a Document,
     /// Whether values are missing for which there is already a message.
     partial: bool,
@@ -174,7 +199,7 @@ struct Unheld {
 }
 
 impl<'a, 'f> Resolver<'a, 'f> {
-    fn new(doc: &'a Document, partial: bool, read: &'f mut ReadFile<'f>) -> Self {
+    fn new(doc: &'a Document, partial: bool, shared: Option<&'a SharedParts>, read: &'f mut ReadFile<'f>) -> Self {
         let numbered = |group| doc.names(group).into_iter().zip(0..).collect();
         let block_names = BlockName::all(doc);
         let mut errors = Vec::new();
@@ -193,6 +218,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
         Self {
             read,
             files: Vec::new(),
+            shared,
             doc,
             partial,
             beams: numbered("beam"),

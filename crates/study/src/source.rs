@@ -3,9 +3,11 @@
 
 use crate::Setting;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use teeter_scenario::ParsedScene;
 use teeter_scenario::diagnostic::Diagnostics;
-use teeter_scenario::resolve::{ReadFile, Resolved};
+use teeter_scenario::resolve::{ReadFile, Resolved, SharedParts};
+use teeter_scenario::scene::Scene;
 
 /// A scene in memory.
 #[derive(Debug, Clone)]
@@ -16,6 +18,7 @@ pub struct StudyScene {
     stem: String,
     sets: Vec<(String, String)>,
     files: BTreeMap<String, Vec<u8>>,
+    shared: Arc<SharedParts>,
 }
 
 impl StudyScene {
@@ -34,7 +37,17 @@ impl StudyScene {
         let parsed = ParsedScene::new(&bytes, name)?;
         let resolved = parsed.load(stem, sets, read)?;
         let files = resolved.files.iter().cloned().collect();
-        Ok((Self { bytes, parsed: Ok(parsed), stem: stem.to_owned(), sets: sets.to_vec(), files }, resolved))
+        Ok((
+            Self {
+                bytes,
+                parsed: Ok(parsed),
+                stem: stem.to_owned(),
+                sets: sets.to_vec(),
+                files,
+                shared: Arc::default(),
+            },
+            resolved,
+        ))
     }
 
     /// A scene that is run with many settings, some of which name files: all files that the scene
@@ -60,7 +73,7 @@ impl StudyScene {
             // What is wrong with a case is told where the case is run.
             let _ = parsed.as_ref().map(|parsed| parsed.load(stem, &setting.pairs(), &mut kept));
         }
-        Self { bytes, parsed, stem: stem.to_owned(), sets: Vec::new(), files }
+        Self { bytes, parsed, stem: stem.to_owned(), sets: Vec::new(), files, shared: Arc::default() }
     }
 
     /// The bytes of the scene and of the files that it reads, in an order that depends on their
@@ -79,12 +92,27 @@ impl StudyScene {
     /// # Errors
     /// All errors of the scene with it.
     pub fn load(&self, setting: &Setting) -> Result<Resolved, Diagnostics> {
-        let sets: Vec<_> = self.sets.iter().cloned().chain(setting.pairs()).collect();
-        let mut read = |path: &str| match self.files.get(path) {
-            Some(bytes) => Ok(bytes.clone()),
-            None => Err("was not read with the scene".to_owned()),
-        };
-        self.parsed.as_ref().map_err(Clone::clone)?.load(&self.stem, &sets, &mut read)
+        self.parsed()?.load(&self.stem, &self.sets_of(setting), &mut |path| self.file(path))
+    }
+
+    /// The scene with a setting without warnings and notes: what of it scenes share is made once.
+    ///
+    /// # Errors
+    /// All errors of the scene with it.
+    pub fn scene(&self, setting: &Setting) -> Result<Scene, Diagnostics> {
+        self.parsed()?.scene(&self.stem, &self.sets_of(setting), &self.shared, &mut |path| self.file(path))
+    }
+
+    fn parsed(&self) -> Result<&ParsedScene, Diagnostics> {
+        self.parsed.as_ref().map_err(Clone::clone)
+    }
+
+    fn sets_of(&self, setting: &Setting) -> Vec<(String, String)> {
+        self.sets.iter().cloned().chain(setting.pairs()).collect()
+    }
+
+    fn file(&self, path: &str) -> Result<Vec<u8>, String> {
+        self.files.get(path).cloned().ok_or_else(|| "was not read with the scene".to_owned())
     }
 
     /// The user's own settings.

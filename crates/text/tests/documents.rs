@@ -191,3 +191,49 @@ fn paths_find_keys_tables_and_groups() {
     assert!(matches!(PLANT.find("pipe"), Some(PathTarget::Group(_))));
     assert!(PLANT.find("pipe.main.colour").is_none() && PLANT.find("site.wind.x").is_none());
 }
+
+#[test]
+fn other_numbers_give_the_document_that_reading_gives() {
+    let sets = |density: &str, workers: &str, wall: &str| {
+        [("fluid.water.density", density), ("site.workers", workers), ("pipe.main.wall", wall)]
+            .map(|(key, value)| (key.to_owned(), value.to_owned()))
+    };
+    let read = |sets: &[(String, String)]| parse(&PLANT, TEXT, "plant.toml", sets);
+    let entries = |document: &Document| {
+        let of = document
+            .entries()
+            .map(|(path, of)| (path.to_owned(), of.value.clone(), of.origin.clone(), of.written.clone(), of.key.name));
+        of.collect::<Vec<_>>()
+    };
+    let first = read(&sets("900 kg/m^3", "7", "rough")).unwrap();
+    let other = sets("1.1 t/m^3", "8", "rough");
+    let quick = first.with_numbers(&other).unwrap();
+    assert_eq!(entries(&quick), entries(&read(&other).unwrap()));
+    assert_eq!(quick.quantity("fluid.water.density"), Some(1100.0));
+    assert_eq!(quick.to_toml(), read(&other).unwrap().to_toml());
+    // As if it had been read so: it can be changed on.
+    assert_eq!(
+        entries(&quick.with("site.workers", 9).unwrap()),
+        entries(&read(&other).unwrap().with("site.workers", 9).unwrap())
+    );
+
+    // Reading has to tell what a word changes, what is wrong, and what other keys do.
+    for told in [
+        sets("900 kg/m^3", "7", "smooth"),
+        sets("-1 kg/m^3", "7", "rough"),
+        sets("900 kg", "7", "rough"),
+        sets("900 kg/m^3", "200", "rough"),
+    ] {
+        assert!(first.with_numbers(&told).is_none(), "{told:?}");
+    }
+    assert!(first.with_numbers(&sets("900 kg/m^3", "7", "rough")[..2]).is_none());
+    // The last setting of a key counts.
+    let twice = |last: &str| {
+        [("site.workers", "5"), ("site.workers", last)].map(|(key, value)| (key.to_owned(), value.to_owned()))
+    };
+    let of_two = read(&twice("6")).unwrap();
+    assert_eq!(of_two.with_numbers(&twice("4")).unwrap().integer("site.workers"), Some(4));
+    let mut first_of_two = twice("6");
+    first_of_two[0].1 = "3".to_owned();
+    assert!(of_two.with_numbers(&first_of_two).is_none(), "not by the first of two");
+}

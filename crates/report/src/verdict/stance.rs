@@ -36,8 +36,8 @@ impl Way {
 pub(crate) struct Edge {
     /// Where the mass centre is over the corner: the point of no return.
     pub(crate) top: f64,
-    /// Where it lies flat on the next side, on level ground.
-    pub(crate) lies: f64,
+    /// Where it lies flat on the next side, on level ground, once that was asked for: see [`Outline::lies`].
+    pub(crate) lies: Option<f64>,
     /// Distance from the mass centre to the corner, m.
     pub(crate) arm: f64,
 }
@@ -95,32 +95,45 @@ impl Outline {
 
     /// How it stands at `angle` (rad).
     pub(crate) fn stance(&self, angle: f64) -> Option<Stance> {
+        let tops = self.tops();
+        let (left, right) = (next(&tops, angle, Way::Left)?, next(&tops, angle, Way::Right)?);
+        // A single top: it rolls about as a drum with an eccentric mass.
+        let stands = left.top - right.top < TAU - ROUNDING;
+        stands.then(|| Stance { flat: self.lowest(right.top, left.top), left, right })
+    }
+
+    /// Where a block that went past this edge lies flat on the next side, on level ground, rad: apart from the stance, as most
+    /// blocks never get there.
+    pub(crate) fn lies(&self, edge: Edge, way: Way) -> Option<f64> {
+        let beyond = next(&self.tops(), edge.top, way)?;
+        Some(self.lowest(edge.top, beyond.top))
+    }
+
+    /// The points of no return, each at one of the angles, a whole turn apart, where it is.
+    fn tops(&self) -> Vec<Edge> {
         let least = ROUNDING * self.size;
-        let tops: Vec<Edge> = self
-            .corners
+        self.corners
             .iter()
             .filter(|corner| corner.arm > least)
             .filter(|corner| corner.arm + corner.rounding >= self.down(corner.direction) - least)
             // Turned by γ − direction the block has this direction pointing down.
-            .map(|corner| Edge { top: self.gamma - corner.direction, lies: f64::NAN, arm: corner.arm })
-            .collect();
-        let next = |from: f64, sign: f64| {
-            // The least turn, beyond rounding, that leads from there to a top.
-            let turn = |top: f64| (sign * (top - from) - ROUNDING).rem_euclid(TAU) + ROUNDING;
-            let edge = tops.iter().min_by(|a, b| turn(a.top).total_cmp(&turn(b.top)))?;
-            Some(Edge { top: from + sign * turn(edge.top), ..*edge })
-        };
-        let lowest = |from: f64, to: f64| lowest(|angle| self.down(self.gamma - angle), from, to);
-        let edge = |sign: f64| {
-            let edge = next(angle, sign)?;
-            let beyond = next(edge.top, sign)?;
-            Some(Edge { lies: lowest(edge.top, beyond.top), ..edge })
-        };
-        let (left, right) = (edge(1.0)?, edge(-1.0)?);
-        // A single top: it rolls about as a drum with an eccentric mass.
-        let stands = left.top - right.top < TAU - ROUNDING;
-        stands.then(|| Stance { flat: lowest(right.top, left.top), left, right })
+            .map(|corner| Edge { top: self.gamma - corner.direction, lies: None, arm: corner.arm })
+            .collect()
     }
+
+    /// Where the mass centre is lowest between two tops that are neighbours, rad.
+    fn lowest(&self, from: f64, to: f64) -> f64 {
+        lowest(|angle| self.down(self.gamma - angle), from, to)
+    }
+}
+
+/// The next top on a way from an angle (rad).
+fn next(tops: &[Edge], from: f64, way: Way) -> Option<Edge> {
+    let sign = way.sign();
+    // The least turn, beyond rounding, that leads from there to a top.
+    let turn = |top: f64| (sign * (top - from) - ROUNDING).rem_euclid(TAU) + ROUNDING;
+    let edge = tops.iter().min_by(|a, b| turn(a.top).total_cmp(&turn(b.top)))?;
+    Some(Edge { top: from + sign * turn(edge.top), ..*edge })
 }
 
 impl Stance {
@@ -128,6 +141,13 @@ impl Stance {
         match way {
             Way::Left => self.left,
             Way::Right => self.right,
+        }
+    }
+
+    pub(crate) fn edge_mut(&mut self, way: Way) -> &mut Edge {
+        match way {
+            Way::Left => &mut self.left,
+            Way::Right => &mut self.right,
         }
     }
 
@@ -168,7 +188,11 @@ mod tests {
         );
         let scene = teeter_scenario::load(scene.as_bytes(), "f", "f", &[]).unwrap().scene;
         let teeter_scenario::scene::Placement::Free { angle, .. } = scene.blocks[0].placement else { panic!("placed") };
-        Outline::of(&scene.blocks[0], gravity)?.stance(angle)
+        let outline = Outline::of(&scene.blocks[0], gravity)?;
+        let mut stance = outline.stance(angle)?;
+        stance.left.lies = outline.lies(stance.left, Way::Left);
+        stance.right.lies = outline.lies(stance.right, Way::Right);
+        Some(stance)
     }
 
     const DOWN: [f64; 2] = [0.0, -9.81];
@@ -181,8 +205,8 @@ mod tests {
             (of.left.top, alpha),
             (of.right.top, -alpha),
             (of.flat, 0.0),
-            (of.left.lies, 0.25 * TAU),
-            (of.right.lies, -0.25 * TAU),
+            (of.left.lies.unwrap(), 0.25 * TAU),
+            (of.right.lies.unwrap(), -0.25 * TAU),
             (of.left.arm, 0.5 * 10_f64.sqrt()),
             (of.part(0.5 * alpha, 0.0).unwrap(), 0.5),
             // On a slope, standing flat leaves less room downhill, to the left of one that rises to the right.
@@ -214,7 +238,7 @@ mod tests {
     fn a_hexagon_goes_to_its_neighbouring_sides() {
         let of = stance("shape = { kind = 'regular', sides = 6, radius = '1 m' }", DOWN).unwrap();
         assert!((of.left.top - of.right.top - TAU / 6.0).abs() < 1e-7, "{of:?}");
-        assert!((of.left.lies - of.flat - TAU / 6.0).abs() < 1e-7, "{of:?}");
+        assert!((of.left.lies.unwrap() - of.flat - TAU / 6.0).abs() < 1e-7, "{of:?}");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Resolves components of motions that are given by recorded accelerations.
 
 use super::Resolver;
+use super::shared::RecordKeys;
 use crate::scene::{AxisScene, History, RecordScene};
 use crate::words::{Baseline, RecordUnit};
 use std::sync::Arc;
@@ -11,7 +12,8 @@ use teeter_record::{IntensityMeasure, ReadSettings, Record, RecordError};
 const SCALINGS: [&str; 5] = ["scale", "peak", "peak_velocity", "arias", "spectral_acceleration"];
 
 /// How a record is scaled.
-enum Scaling {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Scaling {
     /// By a factor.
     Factor(f64),
     /// To a value of an intensity measure, m/s² or m/s.
@@ -25,10 +27,10 @@ impl Resolver<'_, '_> {
             let path = format!("{motion}.{component}");
             self.doc.has_table(&path).then(|| self.record(&path))
         });
-        let axis = |record: RecordScene| AxisScene {
+        let axis = |record: Arc<RecordScene>| AxisScene {
             given: Given::Acceleration,
             amplitude: 1.0,
-            history: History::Record(Arc::new(record)),
+            history: History::Record(record),
         };
         // Both are resolved, so that all errors are found.
         match (x, y) {
@@ -37,8 +39,8 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// A record with its corrections.
-    fn record(&mut self, path: &str) -> Option<RecordScene> {
+    /// A record with its corrections, as it is used.
+    fn record(&mut self, path: &str) -> Option<Arc<RecordScene>> {
         let at = |key: &str| format!("{path}.{key}");
         let doc = self.doc;
         let file = self.word(&at("record"));
@@ -47,21 +49,40 @@ impl Resolver<'_, '_> {
         let taper = self.number(&at("taper"));
         let (file, baseline, taper) = (file?, baseline?, taper?);
         let scaling = self.scaling(path)?;
-        let settings = ReadSettings {
+        let keys = RecordKeys {
+            file,
             step: doc.quantity(&at("step")),
             unit: unit.map(metres_per_second_squared),
-            component: doc.text(&at("component")),
+            component: doc.text(&at("component")).map(str::to_owned),
+            from: doc.quantity(&at("from")),
+            to: doc.quantity(&at("to")),
+            baseline: degree(baseline),
+            taper,
         };
-        let bytes = match self.file(&file) {
+        let Some(shared) = self.shared else {
+            let corrected = self.corrected(path, &keys)?;
+            return self.scaled(path, &keys.file, &corrected, scaling).map(Arc::new);
+        };
+        let used = (keys, (path.to_owned(), scaling));
+        shared.used(&used, || {
+            let corrected = shared.corrected(&used.0, || self.corrected(path, &used.0))?;
+            self.scaled(path, &used.0.file, &corrected, scaling)
+        })
+    }
+
+    /// A record as read and corrected.
+    fn corrected(&mut self, path: &str, keys: &RecordKeys) -> Option<Record> {
+        let RecordKeys { file, step, unit, component, from, to, baseline, taper } = keys;
+        let bytes = match self.file(file) {
             Ok(bytes) => bytes,
             Err(why) => {
-                self.error(&at("record"), why, "paths are relative to the scene's file");
+                self.error(&format!("{path}.record"), why, "paths are relative to the scene's file");
                 return None;
             }
         };
-        let read = Record::read_with(bytes, &file, &settings);
+        let settings = ReadSettings { step: *step, unit: *unit, component: component.as_deref() };
+        let read = Record::read_with(bytes, file, &settings);
         let read = self.judged(path, "record", read)?;
-        let (from, to) = (doc.quantity(&at("from")), doc.quantity(&at("to")));
         let cut = match (from, to) {
             (None, None) => read,
             (from, to) => {
@@ -69,20 +90,31 @@ impl Resolver<'_, '_> {
                 self.judged(path, key, read.cut(from.unwrap_or(0.0), to.unwrap_or(f64::INFINITY)))?
             }
         };
-        let corrected = match degree(baseline) {
+        let corrected = match baseline {
             None => cut,
-            Some(degree) => self.judged(path, "baseline", cut.baseline_corrected(degree))?,
+            Some(degree) => self.judged(path, "baseline", cut.baseline_corrected(*degree))?,
         };
-        let tapered = if taper > 0.0 { self.judged(path, "taper", corrected.tapered(taper))? } else { corrected };
+        if *taper > 0.0 { self.judged(path, "taper", corrected.tapered(*taper)) } else { Some(corrected) }
+    }
+
+    /// A record as used.
+    fn scaled(
+        &mut self,
+        path: &str,
+        file: &str,
+        corrected: &Record,
+        scaling: Option<(&'static str, Scaling)>,
+    ) -> Option<RecordScene> {
         let scaled = match scaling {
-            Some((key, Scaling::Factor(factor))) => self.judged(path, key, tapered.scaled(factor))?,
-            Some((key, Scaling::To(measure, value))) => self.judged(path, key, tapered.scaled_to(measure, value))?,
-            None => tapered,
+            Some((key, Scaling::Factor(factor))) => self.judged(path, key, corrected.scaled(factor))?,
+            Some((key, Scaling::To(measure, value))) => self.judged(path, key, corrected.scaled_to(measure, value))?,
+            None => corrected.clone(),
         };
-        match RecordScene::new(path, &file, scaled) {
+        match RecordScene::new(path, file, scaled) {
             Ok(record) => Some(record),
             Err(error) => {
-                self.error(&at("record"), error.to_string(), "check the step and the unit of the record");
+                let remedy = "check the step and the unit of the record";
+                self.error(&format!("{path}.record"), error.to_string(), remedy);
                 None
             }
         }

@@ -74,14 +74,14 @@ impl<'a> Objective<'a> {
         if self.cancel.load(Ordering::Relaxed) {
             return Err(Failure::Interrupted);
         }
-        let resolved = self.source.load(setting)?;
+        let scene = self.source.scene(setting)?;
         let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
-        let mut simulation = Simulation::new(&resolved.scene).map_err(|error| refused(&error))?;
+        let mut simulation = Simulation::new(&scene).map_err(|error| refused(&error))?;
         simulation.cancelled_by(Arc::clone(self.cancel));
         let place = simulation.layout.blocks.get(self.block).ok_or_else(|| refused(&"the block isn't in the scene"))?;
         // A quarter of the time between rows: what lies between is a cubic.
         let mut tracer = Tracer::new(place.range.clone(), 0.25 * self.motion.interval());
-        let until = self.until.min(resolved.scene.time.end);
+        let until = self.until.min(scene.time.end);
         let ended =
             simulation.run_until(until, &mut [&mut tracer]).map_err(|error| Failure::Ended(error.to_string()))?;
         Failure::unless_complete(ended, simulation.state.t)?;

@@ -161,11 +161,11 @@ fn run_once(
 ) -> Option<CaseRow> {
     let refused = |why: String| Some(CaseRow::without_outputs(number, sweep, CaseStatus::Refused, why));
     let failed = |why: String| Some(CaseRow::without_outputs(number, sweep, CaseStatus::Failed, why));
-    let resolved = match source.load(&sweep.setting(number, searched)) {
-        Ok(resolved) => resolved,
+    let scene = match source.scene(&sweep.setting(number, searched)) {
+        Ok(scene) => scene,
         Err(found) => return refused(Failure::from(found).to_string()),
     };
-    let mut simulation = match Simulation::new(&resolved.scene) {
+    let mut simulation = match Simulation::new(&scene) {
         Ok(simulation) => simulation,
         Err(error) => return refused(error.to_string()),
     };
@@ -174,9 +174,9 @@ fn run_once(
     let wanted: Vec<&str> = sweep.outputs().iter().filter_map(Output::column).collect();
     let mut tell = |_: &str| {};
     let recorder = if wanted.is_empty() {
-        Recorder::watching(&resolved.scene, &layout, &mut tell)
+        Recorder::watching(&scene, &layout, &mut tell)
     } else {
-        Recorder::in_memory(&resolved.scene, &layout, &mut tell)
+        Recorder::in_memory(&scene, &layout, &mut tell)
     };
     let mut recorder = match recorder {
         Ok(recorder) => recorder,
@@ -196,16 +196,19 @@ fn run_once(
         EndedWord::Complete | EndedWord::Stopped => String::new(),
         _ => Failure::unless_complete(ended, state.t).err().map_or_else(String::new, |error| error.to_string()),
     };
+    let mut paths = sweep.outputs().iter().filter_map(Output::summary_path).peekable();
     // Columns need none.
-    let summary = if sweep.outputs().iter().any(|output| output.summary_path().is_some()) {
-        match serde_json::to_value(Summary::new(&resolved.scene, &layout, state, &record, word, 0.0)) {
+    let summary = if paths.peek().is_some() {
+        let of_records = paths.any(|path| path.split('.').next() == Some("records"));
+        let summary = if of_records { Summary::new } else { Summary::without_records };
+        match serde_json::to_value(summary(&scene, &layout, state, &record, word, 0.0)) {
             Ok(summary) => summary,
             Err(error) => return failed(error.to_string()),
         }
     } else {
         serde_json::Value::Null
     };
-    let outputs = sweep.outputs().iter().map(|output| output.cell(&summary, &columns, &resolved.scene)).collect();
+    let outputs = sweep.outputs().iter().map(|output| output.cell(&summary, &columns, &scene)).collect();
     Some(CaseRow {
         number,
         status: CaseStatus::Ran(word),

@@ -5,7 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use teeter_study::{
-    Advice, ConfirmedErrors, Failure, Quantity, Row, SettingWarning, StudyScene, TARGETS, Tradeoff, runner, write,
+    Advice, ConfirmedErrors, Failure, Quantity, Row, Setting, SettingWarning, StudyScene, TARGETS, Tradeoff, runner,
+    write,
 };
 
 fn study(scenario: &str, sets: &[(&str, &str)]) -> Tradeoff {
@@ -271,4 +272,41 @@ fn a_steel_block_on_a_beam_of_two_spans_is_advised_by_its_impacts_and_its_beam()
             _ => {}
         }
     }
+}
+
+#[test]
+fn a_scene_made_of_what_earlier_ones_have_in_common_is_the_same() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../sweeps");
+    let mut read = |path: &str| std::fs::read(folder.join(path)).map_err(|error| error.to_string());
+    let bytes = std::fs::read(folder.join("block-on-ground.toml")).unwrap();
+    let (source, _) = StudyScene::new(bytes, "s.toml", "s", &[], &mut read).expect("a scene");
+    let record = "ground.motion.x";
+    let cases: &[&[(&str, &str)]] = &[
+        &[("contact.feet.friction", "0.3")],
+        &[("contact.feet.friction", "0.4")],
+        &[("contact.feet.friction", "0.3")],
+        &[("contact.feet.friction", "-0.4")],
+        &[("contact.feet.friction", "much")],
+        &[("block.rocker.height", "12 cm"), ("record.scale", "2")],
+        &[("block.rocker.height", "14 cm"), ("record.scale", "2")],
+        &[("block.rocker.height", "14 cm"), ("record.peak", "3 m/s^2")],
+        &[("block.rocker.height", "14 cm"), ("record.peak", "4 m/s^2")],
+        &[("block.rocker.height", "14 cm"), ("record.peak", "-4 m/s^2")],
+        &[("record.baseline", "mean"), ("record.to", "5 s")],
+        &[("record.baseline", "mean"), ("record.to", "6 s")],
+        &[("record.baseline", "mean"), ("record.to", "-6 s")],
+        &[("record.record", "none.csv"), ("record.to", "6 s")],
+        &[("time.step", "1 ms"), ("time.scheme", "event-driven")],
+        &[("time.step", "2 ms"), ("time.scheme", "moreau-jean")],
+        &[("block.rocker.on", "table"), ("time.step", "2 ms")],
+    ];
+    let mut refused = 0;
+    for case in cases {
+        let key = |key: &str| key.strip_prefix("record.").map_or(key.to_owned(), |key| format!("{record}.{key}"));
+        let setting = case.iter().fold(Setting::none(), |setting, (name, value)| setting.set(key(name), *value));
+        let loaded = source.load(&setting).map(|resolved| resolved.scene).map_err(|found| found.to_string());
+        refused += usize::from(loaded.is_err());
+        assert_eq!(source.scene(&setting).map_err(|found| found.to_string()), loaded, "{case:?}");
+    }
+    assert_eq!(refused, 6);
 }

@@ -22,6 +22,9 @@ pub(crate) struct Distribution {
 }
 
 const WORDS: [&str; 4] = ["of", "by", "at_most", "label"];
+
+/// On the page a value below this part of the largest is 0: what rounding leaves of it is no motion. The tables have it.
+const ROUNDING: f64 = 1e-12;
 const EXAMPLE: &str = "such as of = \"max_phi_over_alpha\", at_most = 1";
 
 impl Distribution {
@@ -93,6 +96,9 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
     let end = axis.ends().1;
     let (mut table, mut rows, mut notes) = ("study,by,value,share\n".to_owned(), Vec::new(), Vec::new());
     let mut series = Vec::new();
+    let largest =
+        samples.iter().flat_map(|of| &of.by).flat_map(|(_, sample)| sample).fold(0.0, |most: f64, x| most.max(x.abs()));
+    let rounding = ROUNDING * largest;
     let cell = |value: &str| value.parse::<f64>().map_or_else(|_| value.to_owned(), digits);
     for (number, (study, of)) in studies.iter().zip(&samples).enumerate() {
         for (place, (by, sample)) in of.by.iter().enumerate() {
@@ -109,7 +115,10 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
             series.push(line.number(if of.by.len() > 1 { of_several } else { number }));
             let quantile = |share: f64| {
                 let place = (share * sample.len() as f64).ceil().max(1.0) as usize - 1;
-                sample.get(place).copied().map_or_else(String::new, digits)
+                sample
+                    .get(place)
+                    .copied()
+                    .map_or_else(String::new, |x| digits(if x.abs() < rounding { 0.0 } else { x }))
             };
             rows.push(vec![
                 study.name.clone(),
