@@ -322,3 +322,23 @@ fn faces_and_points_that_cannot_be_are_refused() {
     let error = Simulation::new(&scene).unwrap_err();
     assert!(error.to_string().contains("above the lower face of `plank`"), "{error}");
 }
+
+/// A slab that slides off a beam's end without friction keeps its speed, and falls past the end whatever side it turns to it: its far side
+/// looked like a base that the end had come through.
+#[test]
+fn what_slides_off_a_beam_s_end_falls_freely() {
+    let scene = "[time]\nend = '0.7 s'\nstep = '1 ms'\n\
+         [material.a]\ndensity = '2700 kg/m^3'\nyoungs_modulus = '69 GPa'\n\
+         [beam.t]\nmaterial = 'a'\nspan = '1 m'\nwidth = '5 cm'\nthickness = '1 cm'\nelements = 20\ndamping_ratio = { mode = 1, ratio = 0.02 }\n\
+         [block.b]\nmaterial = 'a'\nwidth = '5 cm'\nheight = '3 cm'\ndepth = '5 cm'\non = 't'\nat = '90 cm'\nvelocity = ['1 m/s', '0 m/s']\n\
+         [contact.c]\nbetween = ['b', 't']\nfriction = 0\n";
+    let scene = teeter_scenario::load(scene.as_bytes(), "off", "off", &[]).unwrap().scene;
+    let mut simulation = teeter_scenario::simulation::Simulation::new(&scene).unwrap();
+    assert_eq!(simulation.run(&mut []).unwrap(), teeter_integrator::Ended::Complete);
+    let block = simulation.layout.blocks[0].range.clone();
+    let (q, v) = (&simulation.state.q[block.clone()], &simulation.state.v[block]);
+    // On a rigid slab instead of the beam it is at (1.600, -1.680) m with (1.000, -5.766) m/s.
+    assert!((q[0] - 1.6).abs() < 2e-3 && (q[1] + 1.68).abs() < 2e-3, "{q:?}");
+    assert!((v[0] - 1.0).abs() < 2e-3 && (v[1] + 5.766).abs() < 5e-3, "{v:?}");
+    assert!(simulation.state.tally.max_penetration < 1e-5, "{:e}", simulation.state.tally.max_penetration);
+}
