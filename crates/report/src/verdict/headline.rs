@@ -161,7 +161,7 @@ fn all(verdict: &[BodyVerdict]) -> String {
         let is_over = |of: &&&BodyVerdict| matches!(of.lies_on, Some(Side::Left | Side::Right | Side::Top));
         let slid = (resting.iter().filter(|of| of.what == Fate::Slid).count(), "after sliding");
         let over = (resting.iter().filter(is_over).count(), "on another side than the base");
-        let told = [slid, over].iter().filter(|(count, _)| *count > 0).map(|(count, how)| format!("{count} {how}"));
+        let told = [slid, over].into_iter().filter(|(count, _)| *count > 0).map(|(count, how)| format!("{count} {how}"));
         let told = told.collect::<Vec<_>>().join(", ");
         let how = if told.is_empty() { told } else { format!(" ({told})") };
         let what = if last == 0.0 {
