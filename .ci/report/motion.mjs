@@ -75,6 +75,15 @@ export function wrongVerdicts(summary, trajectory, { scenery, frames }) {
     } else if (level && beyond(last) && verdict.what !== "moves") {
       say(`φ is beyond α at the end: ${at(last, "phi")}`);
     }
+    // A rectangle as drawn, at rest: which side faces down.
+    if (block.alpha !== null && block.upright && !turns) {
+      const quarter = (at(last, "phi") - scenery.incline) / (Math.PI / 2);
+      const off = Math.abs(quarter - Math.round(quarter)) * 90;
+      const side = ["base", "left side", "top", "right side"][((Math.round(quarter) % 4) + 4) % 4];
+      if (verdict.rests_from === null ? verdict.lies_on !== null : off < 5 && verdict.lies_on !== side) {
+        say(`lies on ${verdict.lies_on}, but φ at the end is ${at(last, "phi")}`);
+      }
+    }
     // Relative to ground that stands still, and to a beam or block only where nothing moves at all.
     const speed = (row) => Math.hypot(at(row, "vx"), at(row, "vy")) + block.reach * Math.abs(at(row, "omega"));
     const bound = Math.sqrt(gravity * block.reach) / 1000;

@@ -19,6 +19,8 @@ pub(crate) struct Options {
     /// What the measured angle shows when the block stands upright, rad.
     pub(crate) offset: f64,
     pub(crate) out: Option<PathBuf>,
+    /// Width of the figures, m.
+    pub(crate) figure_width: f64,
     pub(crate) quiet: bool,
     pub(crate) force: bool,
 }
@@ -69,7 +71,7 @@ pub(crate) fn compare(options: &Options) -> Exit {
         measured: &options.measured.measured.display().to_string(),
         block: &block,
     };
-    match write_all(&comparison, reserved, &named) {
+    match write_all(&comparison, reserved, &named, 1e3 * options.figure_width) {
         Ok(()) => {
             console.note(&format!("results in {0}, report in {0}/compare.html", folder.display()));
             Exit::FinishedRun
@@ -122,9 +124,9 @@ struct Names<'a> {
 }
 
 /// Writes the files, and the sentences to standard output.
-fn write_all(comparison: &Comparison, reserved: Reserved, names: &Names<'_>) -> Result<(), Box<dyn Error>> {
+fn write_all(comparison: &Comparison, reserved: Reserved, names: &Names<'_>, width_mm: f64) -> Result<(), Box<dyn Error>> {
     let Names { title, run, measured, block } = *names;
-    let figures = svg_figures(comparison)?;
+    let figures = svg_figures(comparison, width_mm)?;
     let html = page(comparison, title, [run, measured, block])?;
     let results = reserved.create()?;
     results.write("compare.csv", rows_csv(comparison))?;

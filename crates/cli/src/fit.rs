@@ -29,6 +29,8 @@ pub(crate) struct Options {
     pub(crate) seed: u64,
     pub(crate) jobs: Option<usize>,
     pub(crate) out: Option<PathBuf>,
+    /// Width of the figures, m.
+    pub(crate) figure_width: f64,
     pub(crate) quiet: bool,
     pub(crate) force: bool,
 }
@@ -175,7 +177,7 @@ fn write_all(
     let measured = options.measured.measured.display().to_string();
     let names = [scene.name(), measured.as_str(), block];
     let with_fit = source.load(&fitted.setting).map_err(|found| found.to_string())?;
-    let figures = fit::figures(fitted)?;
+    let figures = fit::figures(fitted, 1e3 * options.figure_width)?;
     let page = fit::page(fitted, &resolved.scene.title, names)?;
     let results = reserved.create()?;
     let file = |file: &str| scene.seen_from(results.folder(), file);

@@ -175,6 +175,9 @@ enum Command {
         /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
         #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
         set: Vec<(String, String)>,
+        /// Width of the figures: 84 mm and 174 mm are one and two columns of most journals
+        #[arg(long, value_name = "WIDTH", default_value = "120 mm", value_parser = record::figure_width)]
+        figure_width: f64,
         /// Print only the advice and errors
         #[arg(long)]
         quiet: bool,
@@ -209,6 +212,9 @@ enum Command {
         #[arg(long, value_name = "DIR", num_args = 2.., requires = "out")]
         #[arg(conflicts_with_all = ["jobs", "shard", "resume", "merge", "sweep"])]
         compare: Vec<PathBuf>,
+        /// Width of the figures: 84 mm and 174 mm are one and two columns of most journals
+        #[arg(long, value_name = "WIDTH", default_value = "120 mm", value_parser = record::figure_width)]
+        figure_width: f64,
         /// Print only errors
         #[arg(long)]
         quiet: bool,
@@ -290,6 +296,9 @@ enum Command {
         /// Folder for the results (default: that of the run with `-compare`)
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
+        /// Width of the figures: 84 mm and 174 mm are one and two columns of most journals
+        #[arg(long, value_name = "WIDTH", default_value = "120 mm", value_parser = record::figure_width)]
+        figure_width: f64,
         /// Print only the results and errors
         #[arg(long)]
         quiet: bool,
@@ -330,6 +339,9 @@ enum Command {
         /// Folder for the results (default: `runs/` with the name of the scene file and `-fit`)
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
+        /// Width of the figures: 84 mm and 174 mm are one and two columns of most journals
+        #[arg(long, value_name = "WIDTH", default_value = "120 mm", value_parser = record::figure_width)]
+        figure_width: f64,
         /// Print only the results and errors
         #[arg(long)]
         quiet: bool,
@@ -554,18 +566,18 @@ fn main() -> ExitCode {
         Command::Check { scene, base, set, model } => {
             check::check(&check::Options { scene, base, set, extent: model }).into()
         }
-        Command::Tradeoff { scene, base, out, set, quiet, force } => {
-            tradeoff::tradeoff(&tradeoff::Options { scene, base, out, set, quiet, force }).into()
+        Command::Tradeoff { scene, base, out, set, figure_width, quiet, force } => {
+            tradeoff::tradeoff(&tradeoff::Options { scene, base, out, set, figure_width, quiet, force }).into()
         }
-        Command::Sweep { sweep: Some(sweep), out, jobs, shard, resume, quiet, force, .. } => {
+        Command::Sweep { sweep: Some(sweep), out, jobs, shard, resume, figure_width, quiet, force, .. } => {
             let jobs = jobs.map(usize::from);
-            sweep::sweep(&sweep::Options { sweep, out, jobs, shard, resume, force, quiet }).into()
+            sweep::sweep(&sweep::Options { sweep, out, jobs, shard, resume, figure_width, force, quiet }).into()
         }
-        Command::Sweep { sweep: None, out, compare, quiet, force, .. } if !compare.is_empty() => {
-            sweep::compare(&compare, &out.unwrap_or_default(), force, quiet).into()
+        Command::Sweep { sweep: None, out, compare, figure_width, quiet, force, .. } if !compare.is_empty() => {
+            sweep::compare(&compare, &out.unwrap_or_default(), figure_width, force, quiet).into()
         }
-        Command::Sweep { sweep: None, out, merge, quiet, force, .. } => {
-            sweep::merge_shards(&merge, &out.unwrap_or_default(), force, quiet).into()
+        Command::Sweep { sweep: None, out, merge, figure_width, quiet, force, .. } => {
+            sweep::merge_shards(&merge, &out.unwrap_or_default(), figure_width, force, quiet).into()
         }
         Command::Record {
             file,
@@ -605,13 +617,13 @@ fn main() -> ExitCode {
             let keys = keys.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?))).collect();
             record::record(&record::Options { file, keys, json, figure_width, out, force }).into()
         }
-        Command::Compare { run, measured, offset, out, quiet, force } => {
-            compare::compare(&compare::Options { run, measured, offset, out, quiet, force }).into()
+        Command::Compare { run, measured, offset, out, figure_width, quiet, force } => {
+            compare::compare(&compare::Options { run, measured, offset, out, figure_width, quiet, force }).into()
         }
-        Command::Fit { scene, measured, vary, offset, samples, seed, jobs, base, set, out, quiet, force } => {
+        Command::Fit { scene, measured, vary, offset, samples, seed, jobs, base, set, out, figure_width, quiet, force } => {
             let (samples, jobs) = (samples.map(usize::from), jobs.map(usize::from));
             let options =
-                fit::Options { scene, base, set, measured, vary, offset, samples, seed, jobs, out, quiet, force };
+                fit::Options { scene, base, set, measured, vary, offset, samples, seed, jobs, out, figure_width, quiet, force };
             fit::fit(&options).into()
         }
         Command::Solvers => solve::list().into(),

@@ -2,6 +2,7 @@
 
 use crate::console::Console;
 use crate::run::Exit;
+use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use teeter_plot::svg_to_pdf;
@@ -32,6 +33,7 @@ pub(crate) fn pdf(options: &Options) -> Exit {
     figures.sort();
     figures.dedup();
     let mut files = Vec::with_capacity(figures.len());
+    let mut missing = BTreeSet::new();
     for figure in figures {
         let file = figure.with_extension("pdf");
         // A link is there, too, wherever it leads.
@@ -46,7 +48,10 @@ pub(crate) fn pdf(options: &Options) -> Exit {
             Err(error) => return bad_input(format!("{} can't be read: {error}", figure.display())),
         };
         match svg_to_pdf(&svg) {
-            Ok(pdf) => files.push((file, pdf)),
+            Ok(pdf) => {
+                missing.extend(pdf.missing);
+                files.push((file, pdf.bytes));
+            }
             Err(error) => return bad_input(format!("{}: {error}", figure.display())),
         }
     }
@@ -55,6 +60,13 @@ pub(crate) fn pdf(options: &Options) -> Exit {
             console.error(&format!("error: {error}"));
             return if matches!(error, ResultsError::Io { .. }) { Exit::Failed } else { Exit::BadInput };
         }
+    }
+    if !missing.is_empty() {
+        let letters = missing.iter().map(char::to_string).collect::<Vec<_>>().join(" ");
+        console.note(&format!(
+            "warning: the font of PDF figures has Latin, Greek and Cyrillic letters; boxes stand for {letters}. A browser prints the SVG to PDF with the \
+             fonts of your system"
+        ));
     }
     console.note(&match &files[..] {
         [(file, _)] => format!("{}", file.display()),

@@ -25,6 +25,8 @@ pub(crate) struct Options {
     pub(crate) shard: Option<Shard>,
     pub(crate) resume: bool,
     pub(crate) force: bool,
+    /// Width of the figures, m.
+    pub(crate) figure_width: f64,
     pub(crate) quiet: bool,
 }
 
@@ -58,16 +60,16 @@ pub(crate) fn sweep(options: &Options) -> Exit {
     let exit = run(console, &study, &results, journal, options.jobs);
     // Of a shard they would be of a part of the cases.
     if exit == Exit::FinishedRun && study.sweep.wants_figures() && shard == Shard::ALL {
-        return draw(console, &results, &stem);
+        return draw(console, &results, &stem, options.figure_width);
     }
     exit
 }
 
 /// Makes the figures of a study that has ended.
-fn draw(console: Console, results: &Results, title: &str) -> Exit {
+fn draw(console: Console, results: &Results, title: &str, figure_width: f64) -> Exit {
     let drawn = || -> Result<(), Box<dyn Error>> {
         let study = ended_study(results.folder(), "")?;
-        write_figures(results, title, &[study])
+        write_figures(results, title, &[study], figure_width)
     };
     match drawn() {
         Ok(()) => {
@@ -82,10 +84,10 @@ fn draw(console: Console, results: &Results, title: &str) -> Exit {
 }
 
 /// Writes the figures of studies, their tables and their page; returns their notes.
-fn write_figures(results: &Results, title: &str, studies: &[Ensemble]) -> Result<(), Box<dyn Error>> {
+fn write_figures(results: &Results, title: &str, studies: &[Ensemble], figure_width: f64) -> Result<(), Box<dyn Error>> {
     let figures = study_figures(studies)?;
     for figure in &figures {
-        for (name, svg) in figure.svgs() {
+        for (name, svg) in figure.svgs(1e3 * figure_width) {
             results.write(&name, svg)?;
         }
         for (name, table) in &figure.tables {
@@ -98,7 +100,7 @@ fn write_figures(results: &Results, title: &str, studies: &[Ensemble]) -> Result
 }
 
 /// Puts the figures of studies side by side.
-pub(crate) fn compare(folders: &[PathBuf], out: &Path, force: bool, quiet: bool) -> Exit {
+pub(crate) fn compare(folders: &[PathBuf], out: &Path, figure_width: f64, force: bool, quiet: bool) -> Exit {
     let console = Console::new(quiet);
     let refused = |text: String| {
         console.error(&text);
@@ -127,7 +129,7 @@ pub(crate) fn compare(folders: &[PathBuf], out: &Path, force: bool, quiet: bool)
         Err(error) => return refused(format!("error: {error}")),
     };
     let title = studies.iter().map(|study| study.name.as_str()).collect::<Vec<_>>().join(" and ");
-    match write_figures(&results, &title, &studies) {
+    match write_figures(&results, &title, &studies, figure_width) {
         Ok(()) => {
             console.note(&format!("figures in {}", out.join("study.html").display()));
             Exit::FinishedRun
@@ -233,7 +235,7 @@ fn why_empty(output: &teeter_study::sweep::Output) -> String {
 }
 
 /// Puts the folders of all shards together.
-pub(crate) fn merge_shards(folders: &[PathBuf], out: &Path, force: bool, quiet: bool) -> Exit {
+pub(crate) fn merge_shards(folders: &[PathBuf], out: &Path, figure_width: f64, force: bool, quiet: bool) -> Exit {
     let console = Console::new(quiet);
     let merged = || -> Result<(bool, Results), JournalError> {
         let (table, identity) = merge(folders)?;
@@ -248,7 +250,7 @@ pub(crate) fn merge_shards(folders: &[PathBuf], out: &Path, force: bool, quiet: 
         Ok((figures, results)) => {
             console.note(&format!("results in {}", out.join(RESULTS).display()));
             let title = out.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-            if figures { draw(console, &results, &title) } else { Exit::FinishedRun }
+            if figures { draw(console, &results, &title, figure_width) } else { Exit::FinishedRun }
         }
         Err(error) => {
             console.error(&format!("error: {error}"));

@@ -21,6 +21,8 @@ pub(crate) struct Options {
     pub(crate) base: Option<PathBuf>,
     pub(crate) out: Option<PathBuf>,
     pub(crate) set: Vec<(String, String)>,
+    /// Width of the figures, m.
+    pub(crate) figure_width: f64,
     pub(crate) quiet: bool,
     pub(crate) force: bool,
 }
@@ -63,7 +65,7 @@ pub(crate) fn tradeoff(options: &Options) -> Exit {
     });
     drop(progress);
     match study {
-        Ok(study) => match write_all(&study, reserved, &resolved, &scene, &words_of(options, &folder)) {
+        Ok(study) => match write_all(&study, reserved, &resolved, &scene, options) {
             Ok(()) => {
                 console.note(&format!("results in {0}, report in {0}/tradeoff.html", folder.display()));
                 Exit::FinishedRun
@@ -109,15 +111,16 @@ fn write_all(
     reserved: Reserved,
     resolved: &Resolved,
     scene: &SceneSource,
-    words: &[String],
+    options: &Options,
 ) -> Result<(), Box<dyn Error>> {
     let results = reserved.create()?;
     let file = |file: &str| scene.seen_from(results.folder(), file);
     results.write("scene.toml", resolved.document.to_toml_elsewhere(file))?;
     results.write("tradeoff.csv", write::csv(study))?;
-    for (name, svg) in write::figures(study)? {
+    for (name, svg) in write::figures(study, 1e3 * options.figure_width)? {
         results.write(&format!("figures/{name}"), svg)?;
     }
+    let words = words_of(options, results.folder());
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     results.write("tradeoff.html", write::page(study, &words)?)?;
     results.write("tradeoff.json", write::json(study))?;

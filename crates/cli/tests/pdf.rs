@@ -89,6 +89,23 @@ fn figures_of_runs_and_records_become_pdf_of_the_width_of_a_column() {
 }
 
 #[test]
+fn letters_that_the_font_lacks_are_named() {
+    let folder = place("letters");
+    let figure = |text: &str| {
+        format!("<svg width=\"60mm\" viewBox=\"0 0 240 40\"><text x=\"4\" y=\"20\" font-size=\"11\">{text}</text></svg>")
+    };
+    std::fs::write(folder.join("known.svg"), figure("Блок ω Ångström ế")).unwrap();
+    std::fs::write(folder.join("unknown.svg"), figure("石 Блок")).unwrap();
+    let said = done(&folder, &["pdf", "known.svg"]);
+    assert!(!said.contains("warning"), "{said}");
+    let said = done(&folder, &["pdf", "unknown.svg"]);
+    assert!(said.contains("warning") && said.contains("boxes stand for 石.") && !said.contains('Б'), "{said}");
+    // The glyphs that are used, not the whole font.
+    let bytes = std::fs::metadata(folder.join("known.pdf")).unwrap().len();
+    assert!(bytes < 12_000, "{bytes} bytes");
+}
+
+#[test]
 fn what_is_no_figure_is_refused_and_nothing_replaced_unasked() {
     let folder = place("refused");
     let refused = |words: &[&str], wanted: &str| {

@@ -150,6 +150,18 @@ fn check(ran: &Ran, number: usize, what: &str) {
         }
     }
 
+    // The side that faces down at the end, of a block at rest that leans on nothing.
+    let quarter = (phi[last] - slope) / std::f64::consts::FRAC_PI_2;
+    let flat = (quarter - quarter.round()).abs() * 90.0;
+    let side = ["base", "left side", "top", "right side"][(quarter.round() as i64).rem_euclid(4) as usize];
+    match said["rests_from"].as_f64() {
+        // Beams bend under what stands on them, and their slope is in no column.
+        Some(_) if flat < 5.0 => assert_eq!(said["lies_on"], side, "{what}"),
+        Some(_) if flat > 15.0 => assert!(said["lies_on"].is_null(), "{what}"),
+        Some(_) => {}
+        None => assert!(said["lies_on"].is_null(), "{what}"),
+    }
+
     // Slid: the foot on which it leans, at the start and at the end.
     if on_ground && !overturned && scene.ground.as_ref().is_some_and(|ground| !ground.motion.is_given()) {
         let foot = |k: usize| {
@@ -285,6 +297,45 @@ fn a_block_overturns_to_the_side_to_which_it_is_tilted_past_alpha() {
             assert_eq!(ran.summary["overturned_at"].as_f64(), Some(0.0));
         }
     }
+}
+
+/// A block of 5 cm × 15 cm that begins somewhere above the ground.
+const THROWN: &str = "[block.b]\nmaterial = 'a'\nwidth = '5 cm'\nheight = '15 cm'\ndepth = '5 cm'\n";
+
+#[test]
+fn what_comes_down_on_a_side_says_on_which() {
+    for (name, start, side) in [
+        ("right", "position = ['0 m', '30 cm']\nspin = '-4 rad/s'", "right side"),
+        ("left", "position = ['0 m', '30 cm']\nspin = '4 rad/s'", "left side"),
+        ("turned", "position = ['0 m', '20 cm']\nangle = '20 deg'", "left side"),
+        ("head", "position = ['0 m', '10 cm']\nangle = '-175 deg'", "top"),
+        ("upright", "position = ['0 m', '8 cm']", "base"),
+    ] {
+        let text = format!("{TIME}[ground]\n{THROWN}{start}\n[contact.f]\nbetween = ['b', 'ground']\nfriction = 0.6\n");
+        let ran = scene(&format!("side-{name}"), &text);
+        let (said, headline) = (ran.verdict("b"), ran.summary["headline"].as_str().unwrap());
+        assert_eq!(said["lies_on"], side, "{said}");
+        // It stood nowhere before, so it did not overturn.
+        assert!(said["overturned_at"].is_null() && said["rests_from"].as_f64().unwrap() > 0.0, "{said}");
+        assert_eq!(headline.contains(&format!(" on its {side}")), side != "base", "{headline}");
+        let phi = ran.column("b.phi").last().unwrap().to_degrees();
+        let wanted = match side {
+            "right side" => -90.0,
+            "left side" => 90.0,
+            "top" => -180.0,
+            _ => 0.0,
+        };
+        assert!((phi - wanted).abs() < 0.01, "{phi} {headline}");
+        assert!(ran.stderr.contains(headline), "{}", ran.stderr);
+    }
+}
+
+#[test]
+fn what_overturned_says_on_which_side_it_ended() {
+    let ran = scene("ended", &format!("{TIME}[ground]\n{ROCKER}tilt = '-13 deg'\n{FLOOR}"));
+    let headline = ran.summary["headline"].as_str().unwrap();
+    assert!(headline.starts_with("`b` overturned to the right at t = 0 s, came to rest on its right side at t = "), "{headline}");
+    assert_eq!(ran.verdict("b")["lies_on"], "right side");
 }
 
 #[test]

@@ -43,8 +43,8 @@ mod series;
 mod theme;
 mod ticks;
 
-/// The font of figures, as a TrueType file: a subset of Arimo, which has the widths of Arial and Helvetica, with Latin, Greek,
-/// superscripts and the signs of formulas. Its licence is the SIL Open Font License 1.1 (`assets/OFL.txt`).
+/// The font of figures, as a TrueType file: a subset of Arimo, which has the widths of Arial and Helvetica, with Latin,
+/// Greek, Cyrillic, superscripts and the signs of formulas: `assets/README.md` says which letters. Its licence is the SIL Open Font License 1.1 (`assets/OFL.txt`).
 #[cfg(feature = "font")]
 pub const FONT: &[u8] = include_bytes!("../assets/Arimo-subset.ttf");
 
@@ -56,6 +56,6 @@ pub use figure::Figure;
 pub use legend::{LEGEND_WIDTH, Legend, legend_width, text_width};
 pub use panel::{Band, Panel};
 #[cfg(feature = "pdf")]
-pub use pdf::{PdfError, svg_to_pdf};
+pub use pdf::{PdfError, PdfFigure, svg_to_pdf};
 pub use series::{Mark, Series};
 pub use theme::{Colour, Theme};

@@ -1,4 +1,4 @@
-//! Figures as PDF: the SVG documents of this crate as vector graphics of one page, with the font embedded.
+//! Figures as PDF: the SVG documents of this crate as vector graphics of one page, with the glyphs of the font that they use embedded.
 //!
 //! It reads what [`Figure::to_svg`](crate::Figure::to_svg) and [`Drawing::to_svg`](crate::Drawing::to_svg) write, and nothing
 //! else: an element that it doesn't know is an error, so that no figure loses a part.
@@ -33,6 +33,16 @@ fn not_ours(what: impl Into<String>) -> PdfError {
     PdfError::NotOurs(what.into())
 }
 
+/// A figure as a PDF document.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct PdfFigure {
+    /// The file.
+    pub bytes: Vec<u8>,
+    /// Letters that [`FONT`](crate::FONT) lacks, in alphabetical order: boxes stand for them.
+    pub missing: Vec<char>,
+}
+
 /// A figure as a PDF document, from its SVG: of the same size, with type of the same size in an embedded font. The bytes depend on the
 /// figure only.
 ///
@@ -41,13 +51,14 @@ fn not_ours(what: impl Into<String>) -> PdfError {
 ///
 /// let panel = Panel::new(Axis::between("φ (°)", 0.0, 1.0)).with([Series::line("", [(0.0, 0.0), (1.0, 1.0)])]);
 /// let svg = Figure::new("phi", "Angle", Axis::between("t (s)", 0.0, 1.0)).panel(panel).width_mm(84.0).to_svg();
-/// assert!(svg_to_pdf(&svg)?.starts_with(b"%PDF-1.7"));
+/// let pdf = svg_to_pdf(&svg)?;
+/// assert!(pdf.missing.is_empty() && pdf.bytes.starts_with(b"%PDF-1.7"));
 /// # Ok::<(), teeter_plot::PdfError>(())
 /// ```
 ///
 /// # Errors
 /// If the text is no SVG document of this crate for paper.
-pub fn svg_to_pdf(svg: &str) -> Result<Vec<u8>, PdfError> {
+pub fn svg_to_pdf(svg: &str) -> Result<PdfFigure, PdfError> {
     let root = Element::document(svg)?;
     let font = font::Font::new().ok_or_else(|| not_ours("its font"))?;
     let [width, height] = root.numbers("viewBox")?.get(2..4).and_then(|size| size.try_into().ok()).unwrap_or([0.0; 2]);
@@ -59,5 +70,6 @@ pub fn svg_to_pdf(svg: &str) -> Result<Vec<u8>, PdfError> {
     let points = across * 72.0 / 25.4 / width;
     let mut content = Content::new(&font, height, points);
     content.draw(&root)?;
-    Ok(file::write(content, &font, [width * points, height * points], &root.title()))
+    let bytes = file::write(content, &font, [width * points, height * points], &root.title());
+    Ok(PdfFigure { bytes: bytes.ok_or_else(|| not_ours("its font"))?, missing: font.missing() })
 }

@@ -58,7 +58,7 @@
   }
 
   const strongest = Math.max(1e-300, ...forces.points.map(({ normal }) => normal.reduce((most, f) => Math.max(most, f), 0)));
-  const scaled = (values) => values.map((f) => (f === null ? null : f * forces.factor));
+  const scaled = (values, factor) => values.map((f) => (f === null ? null : f * factor));
   const active = scenery.contacts.map((_, k) => k).filter((k) => forces.points.some((point) => point.contact === k));
   const nameOf = ({ block, surface }) => `${scenery.blocks[block].name} on ${surface}`;
   // So many that one would look for them: one at a time.
@@ -74,17 +74,18 @@
     const points = forces.points.filter((point) => point.contact === k);
     if (!points.length) return;
     const suffix = scenery.contacts.length > 1 ? `, ${nameOf(contact)}` : "";
-    const series = (key) => points.map((point) =>
-      ({ label: contact.points[point.point].label, index: point.point, t: forces.borders, y: scaled(point[key]), stepped: true }));
-    for (const [key, title] of [["normal", "Normal force"], ["tangential", "Tangential force"]]) {
+    const series = (key, factor) => points.map((point) =>
+      ({ label: contact.points[point.point].label, index: point.point, t: forces.borders, y: scaled(point[key], factor), stepped: true }));
+    for (const [i, [key, title]] of [["normal", "Normal force"], ["tangential", "Tangential force"]].entries()) {
       if (key === "tangential" && forces.frictionless.includes(k)) continue;
-      const lines = series(key);
+      const [prefix, factor] = forces.units[k][i];
+      const lines = series(key, factor);
       const means = key === "normal" ? points.filter(({ mean }) => mean).map((point) =>
-        ({ label: contact.points[point.point].label, index: point.point, t: forces.borders, y: scaled(point.mean) })) : [];
+        ({ label: contact.points[point.point].label, index: point.point, t: forces.borders, y: scaled(point.mean, factor) })) : [];
       for (const line of lines) line.raw = means.some(({ index }) => index === line.index);
-      const least = 1e-6 * strongest * forces.factor;
+      const least = 1e-6 * strongest * factor;
       plots.add({
-        id: `${key}-${k}`, contact: k, title: title + suffix, unit: `${forces.prefix}N`, series: [...lines, ...means], cut: cutOf(lines, least), floor: 0, least, height: 150,
+        id: `${key}-${k}`, contact: k, title: title + suffix, unit: `${prefix}N`, series: [...lines, ...means], cut: cutOf(lines, least), floor: 0, least, height: 150,
       });
       if (means.length) {
         htmlElement("p", "note", `Pale: raw, the mean of each step or of a few. Strong: the mean over ${forces.window}.`, byId(`panel-${key}-${k}`));

@@ -5,11 +5,13 @@
 
 mod carrier;
 mod headline;
+mod lying;
 mod stance;
 mod standing;
 
 use carrier::Carrier;
 pub(crate) use headline::headline;
+pub use lying::Side;
 use serde::{Deserialize, Serialize};
 pub use stance::Way;
 use stance::{Edge, Outline, Stance};
@@ -90,6 +92,8 @@ pub struct BodyVerdict {
     pub overturned_at: Option<f64>,
     /// From when on it rests, s.
     pub rests_from: Option<f64>,
+    /// On which side it rests, of one that does and doesn't lean on something.
+    pub lies_on: Option<Side>,
     /// How far it slid along what carries it, from the start to the end, m; to the right positive.
     pub slid: Option<f64>,
     /// The largest |φ|/α.
@@ -103,6 +107,9 @@ pub struct BodyVerdict {
     /// Of a block that rocks and has not been upright yet, nor turned back: its angle at the end, rad.
     #[serde(skip)]
     pub(crate) on_its_way: Option<f64>,
+    /// Of a block that rests, but lies on none of its sides: its angle at the end, rad.
+    #[serde(skip)]
+    pub(crate) leans_at: Option<f64>,
 }
 
 /// What is known of a block so far.
@@ -397,7 +404,10 @@ impl Fates {
     ) -> Vec<BodyVerdict> {
         let watch = Watch::of(scene, layout);
         let of = |(number, (seen, watched)): (usize, (&Seen, &Watched))| {
-            (!watched.driven).then(|| seen.verdict(watched, number, layout, state, rocking.get(number)))
+            (!watched.driven).then(|| {
+                let block = &scene.blocks[number];
+                seen.verdict(watched, (number, block), layout, state, rocking.get(number))
+            })
         };
         self.blocks.iter().zip(&watch.blocks).enumerate().filter_map(of).collect()
     }
@@ -407,7 +417,7 @@ impl Seen {
     fn verdict(
         &self,
         watched: &Watched,
-        number: usize,
+        (number, block): (usize, &BlockScene),
         layout: &Layout,
         state: &State,
         rocking: Option<&RockingMonitor>,
@@ -439,6 +449,11 @@ impl Seen {
             _ if has_slid => (Fate::Slid, None, None),
             _ => (Fate::Moves, None, None),
         };
+        let lies_on = rests.and(watched.outline.as_ref()).and_then(|outline| {
+            let turned = self.angle - watched.carrier.slope(&state.q);
+            Side::below(block, outline, turned)
+        });
+        let leans = rests.is_some() && lies_on.is_none() && watched.outline.is_some();
         BodyVerdict {
             body: layout.blocks[number].name.clone(),
             what,
@@ -446,6 +461,8 @@ impl Seen {
             way,
             overturned_at: overturned.map(|(t, _)| t),
             rests_from: rests,
+            leans_at: leans.then(|| layout.tilt(number, &state.q)),
+            lies_on,
             slid,
             max_phi_over_alpha: self.part,
             last_peak: peak.filter(|_| what == Fate::Rocks).map(|peak| peak.phi),

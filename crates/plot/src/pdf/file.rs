@@ -3,8 +3,9 @@
 use super::content::Content;
 use super::font::Font;
 
-/// A file of one page of this size in points.
-pub(super) fn write(content: Content<'_>, font: &Font, [width, height]: [f64; 2], title: &str) -> Vec<u8> {
+/// A file of one page of this size in points; `None` if the font is broken.
+pub(super) fn write(content: Content<'_>, font: &Font, [width, height]: [f64; 2], title: &str) -> Option<Vec<u8>> {
+    let glyphs = font.file()?;
     let opacities = content.opacities.iter().enumerate().map(|(number, opacity)| {
         let [fill, stroke] = opacity.map(|part| f64::from(part) / 1000.0);
         format!("/G{number} << /ca {fill} /CA {stroke} >> ")
@@ -29,10 +30,10 @@ pub(super) fn write(content: Content<'_>, font: &Font, [width, height]: [f64; 2]
         font.widths()
     ));
     file.object(&format!("<< /Type /FontDescriptor /FontName /{name} {} /FontFile2 8 0 R >>", font.descriptor()));
-    file.stream(&format!("/Length1 {} ", crate::FONT.len()), crate::FONT);
+    file.stream(&format!("/Length1 {} ", glyphs.len()), &glyphs);
     file.stream("", font.to_unicode().as_bytes());
     file.object(&format!("<< /Title <feff{title}> /Producer (teeter) >>"));
-    file.end()
+    Some(file.end())
 }
 
 /// A file as far as it is written.

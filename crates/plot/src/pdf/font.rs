@@ -1,14 +1,25 @@
 //! The embedded font, and which of its glyphs a document uses.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use subsetter::GlyphRemapper;
 use ttf_parser::{Face, GlyphId};
 
 /// The font of figures.
 pub(super) struct Font {
     face: Face<'static>,
-    /// The glyphs used, with a letter that each stands for.
-    used: RefCell<BTreeMap<u16, char>>,
+    used: RefCell<Used>,
+}
+
+/// What a document uses of it.
+#[derive(Default)]
+struct Used {
+    /// The numbers of its glyphs in the document.
+    numbers: GlyphRemapper,
+    /// The glyphs by these numbers, with a letter that each stands for.
+    glyphs: BTreeMap<u16, (u16, char)>,
+    /// Letters that the font lacks.
+    missing: BTreeSet<char>,
 }
 
 impl Font {
@@ -40,21 +51,36 @@ impl Font {
         let mut used = self.used.borrow_mut();
         self.glyphs(text)
             .map(|(glyph, letter)| {
-                used.entry(glyph).or_insert(letter);
-                format!("{glyph:04x}")
+                if glyph == 0 {
+                    used.missing.insert(letter);
+                }
+                let number = used.numbers.remap(glyph);
+                used.glyphs.entry(number).or_insert((glyph, letter));
+                format!("{number:04x}")
             })
             .collect()
+    }
+
+    /// The font with the glyphs used, as a file.
+    pub(super) fn file(&self) -> Option<Vec<u8>> {
+        subsetter::subset(crate::FONT, 0, &self.used.borrow().numbers).ok()
+    }
+
+    /// The letters used that it lacks, which are drawn as boxes.
+    pub(super) fn missing(&self) -> Vec<char> {
+        self.used.borrow().missing.iter().copied().collect()
     }
 
     /// The widths of the glyphs used, as an array of PDF.
     pub(super) fn widths(&self) -> String {
         let used = self.used.borrow();
-        used.keys().map(|glyph| format!("{glyph} [{:.0}] ", self.advance(*glyph))).collect()
+        used.glyphs.iter().map(|(number, (glyph, _))| format!("{number} [{:.0}] ", self.advance(*glyph))).collect()
     }
 
     /// What the glyphs used stand for, so that text can be copied and searched.
     pub(super) fn to_unicode(&self) -> String {
-        let used: Vec<(u16, char)> = self.used.borrow().iter().map(|(glyph, letter)| (*glyph, *letter)).collect();
+        let used = self.used.borrow();
+        let used: Vec<(u16, char)> = used.glyphs.iter().map(|(number, (_, letter))| (*number, *letter)).collect();
         let mut map =
             "/CIDInit /ProcSet findresource begin\n12 dict begin\nbegincmap\n/CIDSystemInfo << /Registry (Adobe) \
                        /Ordering (UCS) /Supplement 0 >> def\n/CMapName /Adobe-Identity-UCS def\n/CMapType 2 def\n\

@@ -234,16 +234,14 @@ impl Plots<'_> {
         let window = means::window(&self.panels.curves);
         let curves = &self.panels.forces;
         let strongest = curves.iter().flatten().flat_map(|forces| &forces.normal).fold(0.0, |most: f64, f| f.max(most));
-        let (prefix, factor) = self.panels.force_unit;
-        let unit = format!("{prefix}N");
-        let least = 1e-6 * strongest * factor;
         let mut pairs = Vec::new();
         for (pair, contact) in scenery.contacts.iter().enumerate() {
             let (mut normal, mut means, mut tangential, mut bands) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
             for (point, drawn) in contact.points.iter().enumerate() {
                 let Some(forces) = &curves[contact.first + point] else { continue };
                 let label = &drawn.label;
-                let step = |y: &[f64], label: &str| {
+                let [factor, sideways] = self.panels.force_units[pair].map(|(_, factor)| factor);
+                let step = |y: &[f64], factor: f64, label: &str| {
                     let end = borders.last().copied().unwrap_or_default();
                     Series::staircase(label, borders.iter().copied().zip(y.iter().map(|y| factor * y)), end)
                         .number(point)
@@ -251,23 +249,26 @@ impl Plots<'_> {
                 let mean = means::normal(&self.panels.curves, forces, window);
                 // The raw values stay behind their mean, which then has the name.
                 normal.push(if mean.is_some() {
-                    step(&forces.normal, "").faint()
+                    step(&forces.normal, factor, "").faint()
                 } else {
-                    step(&forces.normal, label)
+                    step(&forces.normal, factor, label)
                 });
                 let scaled = |mean: Vec<f64>| {
                     borders.iter().copied().zip(mean.into_iter().map(|y| factor * y)).collect::<Vec<_>>()
                 };
                 means.extend(mean.map(|mean| Series::line(label, scaled(mean)).number(point)));
-                tangential.push(step(&forces.tangential, label));
+                tangential.push(step(&forces.tangential, sideways, label));
                 bands.push(Band::new(label, stretches(&borders, &forces.state)));
             }
             if normal.is_empty() {
                 continue;
             }
             let mut panels = Vec::new();
-            let strongest = values(&normal).fold(0.0, f64::max);
-            for (what, mut lines) in [("Normal", normal), ("Tangential", tangential)] {
+            let weight = values(&normal).fold(0.0, f64::max) / self.panels.force_units[pair][0].1;
+            let units = self.panels.force_units[pair];
+            for ((what, mut lines), (prefix, factor)) in [("Normal", normal), ("Tangential", tangential)].into_iter().zip(units)
+            {
+                let (unit, least) = (format!("{prefix}N"), 1e-6 * strongest * factor);
                 if what == "Tangential" && !self.panels.tangential[pair] {
                     continue;
                 }
@@ -285,7 +286,7 @@ impl Plots<'_> {
                 panels.push(self.marked(Panel::new(y).with(lines).telling_apart(), Some(pair)).note(note));
             }
             panels.push(Panel::bands(bands, [(STICK, "stick"), (SLIP, "slip"), (Colour::Paper, "open")]));
-            pairs.push((pair, strongest, panels));
+            pairs.push((pair, weight, panels));
         }
         self.by_pairs("contact_forces", "Contact forces on the blocks over time", pairs)
     }

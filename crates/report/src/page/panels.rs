@@ -4,6 +4,7 @@
 use super::content::{LeftOut, largest};
 use super::curves::{Curves, ForceCurve};
 use super::recorder::{NUMBERS, PageRecorder};
+use super::scenery::ContactDrawn;
 use teeter_scenario::scene::LengthUnit;
 
 mod forces;
@@ -96,8 +97,8 @@ pub(crate) struct Panels {
     pub(crate) panels: Vec<TimePanel>,
     pub(crate) portraits: Vec<Portrait>,
     pub(crate) left_out: Vec<LeftOut>,
-    /// The prefix of the unit of all contact forces, with its factor.
-    pub(crate) force_unit: (&'static str, f64),
+    /// The prefixes of the units of normal and of tangential forces, with their factors, by contacts.
+    pub(crate) force_units: Vec<[(&'static str, f64); 2]>,
     /// Whether tangential forces are more than rounding, by contacts.
     pub(crate) tangential: Vec<bool>,
 }
@@ -131,6 +132,23 @@ fn seen<'a>(forces: impl Iterator<Item = &'a f64>) -> f64 {
     cut_at(sizes).map_or(most, |(limit, _)| limit)
 }
 
+/// The prefixes of the units of normal and tangential forces, with their factors, by contacts: those of the largest normal forces of all, so that forces can
+/// be compared, but for what would be [`SMALL`] there, as friction that hardly acts beside a weight.
+fn force_units(recorder: &PageRecorder, forces: &[Option<ForceCurve>]) -> Vec<[(&'static str, f64); 2]> {
+    let common = prefix(seen(forces.iter().flatten().flat_map(|forces| &forces.normal)));
+    let unit = |size: f64| if size > 0.0 && size * common.1 < SMALL { prefix(size) } else { common };
+    let of = |contact: &ContactDrawn| {
+        let own = || forces[contact.first..contact.first + contact.points.len()].iter().flatten();
+        let sizes =
+            [seen(own().flat_map(|forces| &forces.normal)), seen(own().flat_map(|forces| &forces.tangential))];
+        sizes.map(unit)
+    };
+    recorder.scenery.contacts.iter().map(of).collect()
+}
+
+/// Numbers below this are small for an axis: their unit is another one.
+const SMALL: f64 = 0.1;
+
 /// A force this many times the one that nine of ten samples stay below is a peak of an impact, whose height is that of
 /// the sample's length; the axis then ends at half as much, for the rest to be legible.
 const PEAK: f64 = 6.0;
@@ -159,7 +177,7 @@ impl Panels {
             let forces = forces(&curves);
             let mut panels = Self {
                 tangential: vec![true; recorder.scenery.contacts.len()],
-                force_unit: prefix(seen(forces.iter().flatten().flat_map(|forces| &forces.normal))),
+                force_units: force_units(recorder, &forces),
                 curves,
                 forces,
                 panels: Vec::new(),

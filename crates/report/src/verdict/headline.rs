@@ -1,6 +1,6 @@
 //! What became of a scene, in a sentence.
 
-use super::{BodyVerdict, Fate};
+use super::{BodyVerdict, Fate, Side};
 use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
 use teeter_integrator::State;
@@ -84,8 +84,13 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         format!("slid by {} to the {}", with_unit(slid.abs(), "m"), if slid < 0.0 { "left" } else { "right" })
     });
     let beside = |text: String| if largest.is_empty() { text } else { format!("{text} ({largest})") };
+    // Where nothing is said, it rests on its base.
+    let side = side_below(of).filter(|_| of.lies_on != Some(Side::Base)).unwrap_or_default();
+    let then_rested = of.rests_from.filter(|_| of.what != Fate::Rests).map_or_else(String::new, |t| {
+        format!(", came to rest{} at {}", side_below(of).unwrap_or_default(), time(t))
+    });
     match of.what {
-        Fate::Overturned => format!("overturned to the {way}{at}"),
+        Fate::Overturned => format!("overturned to the {way}{at}{then_rested}"),
         Fate::Left => {
             let block = scene.blocks.iter().find(|block| block.name == of.body);
             let beam = block.and_then(|block| match block.placement {
@@ -93,12 +98,15 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
                 _ => None,
             });
             let beam = beam.map_or_else(|| "its beam".to_owned(), |name| format!("`{name}`"));
-            beside(format!("left {beam} at its {way} end{at}"))
+            beside(format!("left {beam} at its {way} end{at}{then_rested}"))
         }
         Fate::Sunk => format!("fell below everything that could hold it{at}"),
-        Fate::Rests if of.t == Some(0.0) => beside("stood still throughout".to_owned()),
-        Fate::Rests => beside(format!("came to rest{at}")),
-        Fate::Slid if of.rests_from.is_some() => beside(format!("{slid} and came to rest{at}")),
+        Fate::Rests if of.t == Some(0.0) => {
+            let how = if side.is_empty() { "stood" } else { "lay" };
+            beside(format!("{how} still{side} throughout"))
+        }
+        Fate::Rests => beside(format!("came to rest{side}{at}")),
+        Fate::Slid if of.rests_from.is_some() => beside(format!("{slid} and came to rest{side}{at}")),
         Fate::Slid => beside(format!("slides on, {slid} so far")),
         Fate::Rocks if of.on_its_way.is_some() => {
             let now = of.on_its_way.map_or_else(String::new, angle);
@@ -113,6 +121,12 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         }
         Fate::Moves => beside("still moves".to_owned()),
     }
+}
+
+/// How a block that rests does so, in words after "came to rest"; `None` of what has no sides.
+fn side_below(of: &BodyVerdict) -> Option<String> {
+    let leans = of.leans_at.map(|phi| format!(" at φ = {}", angle(phi)));
+    of.lies_on.as_ref().map(|side| format!(" on its {}", side.word())).or(leans)
 }
 
 fn has_slid(scene: &Scene, of: &BodyVerdict) -> bool {
@@ -143,12 +157,17 @@ fn all(verdict: &[BodyVerdict]) -> String {
     let resting: Vec<_> =
         verdict.iter().filter(|of| matches!(of.what, Fate::Rests | Fate::Slid) && of.rests_from.is_some()).collect();
     if let Some(last) = resting.iter().filter_map(|of| of.rests_from).reduce(f64::max) {
-        let slid = resting.iter().filter(|of| of.what == Fate::Slid).count();
-        let slid = if slid > 0 { format!(" ({slid} after sliding)") } else { String::new() };
+        // Of rectangles: other shapes are as often drawn on any of their sides.
+        let is_over = |of: &&&BodyVerdict| matches!(of.lies_on, Some(Side::Left | Side::Right | Side::Top));
+        let slid = (resting.iter().filter(|of| of.what == Fate::Slid).count(), "after sliding");
+        let over = (resting.iter().filter(is_over).count(), "on another side than the base");
+        let told = [slid, over].into_iter().filter(|(count, _)| *count > 0).map(|(count, how)| format!("{count} {how}"));
+        let told = told.collect::<Vec<_>>().join(", ");
+        let how = if told.is_empty() { told } else { format!(" ({told})") };
         let what = if last == 0.0 {
             "stood still throughout".to_owned()
         } else {
-            format!("came to rest{slid}, last at {}", time(last))
+            format!("came to rest{how}, last at {}", time(last))
         };
         tell(&resting, &what, "");
     }

@@ -62,6 +62,9 @@ struct Corner {
 /// A corner that is no higher than this part of the block's size counts as a summit.
 const ROUNDING: f64 = 1e-9;
 
+/// Corners that differ in height by less than this part of the block's size are of one side, as it lies: the angle at which it does is only found so well.
+const LEVEL: f64 = 1e-6;
+
 /// What decides how a block stands.
 #[derive(Clone, Debug)]
 pub(crate) struct Outline {
@@ -91,6 +94,24 @@ impl Outline {
     fn down(&self, direction: f64) -> f64 {
         let reach = |corner: &Corner| corner.arm * (direction - corner.direction).cos() + corner.rounding;
         self.corners.iter().map(reach).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The corners at the ends of the side that is lowest where this direction (rad) of the block points down, left and right as seen then; `None`
+    /// where a single one is.
+    pub(super) fn lowest_at(&self, direction: f64) -> Option<[usize; 2]> {
+        let least = self.down(direction) - LEVEL * self.size;
+        let lowest = || {
+            let of = |(number, corner): (usize, &Corner)| {
+                let turn = direction - corner.direction;
+                let is_low = corner.arm * turn.cos() + corner.rounding >= least;
+                // With `direction` downwards, what is ahead of it counter-clockwise is to the right.
+                is_low.then(|| (number, -corner.arm * turn.sin()))
+            };
+            self.corners.iter().enumerate().filter_map(of)
+        };
+        let (left, from) = lowest().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let (right, to) = lowest().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (to - from > LEVEL * self.size).then_some([left, right])
     }
 
     /// How it stands at `angle` (rad).

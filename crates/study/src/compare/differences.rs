@@ -38,13 +38,15 @@ pub struct ChannelComparison {
     pub origin: f64,
     /// How far they are apart.
     pub differences: Differences,
+    /// How far they are apart in the rows in which the block was held, if there are any.
+    pub held: Option<Differences>,
 }
 
 /// Compares all quantities that a table holds, and their rates.
 pub(super) fn of(
     motion: &MeasuredMotion,
     trace: &MotionTrace,
-    rows: &Range<usize>,
+    [rows, held]: [&Range<usize>; 2],
     window: usize,
 ) -> Vec<ChannelComparison> {
     let mut found = Vec::new();
@@ -55,12 +57,16 @@ pub(super) fn of(
         let origin = if channel.has_own_origin() { offset_of(values, &simulated.value, rows.clone()) } else { 0.0 };
         let moved: Vec<f64> = values.iter().map(|value| value + origin).collect();
         let measured = if channel.rate().is_some() { local_fit(t, &moved, window) } else { unsmoothed(moved) };
-        let differences = differences(*channel, t, &measured.value, &simulated.value, rows.clone());
+        let [differences, held_differences] =
+            [rows, held].map(|rows| differences(*channel, t, &measured.value, &simulated.value, rows.clone()));
+        let some = |found: Differences| Some(found).filter(|found| found.rows > 0);
         let rate = channel.rate().filter(|rate| motion.values(*rate).is_none());
         let rates = rate.map(|rate| {
             let (a, b) = (unsmoothed(measured.rate.clone()), unsmoothed(simulated.rate.clone()));
-            let differences = self::differences(rate, t, &a.value, &b.value, rows.clone());
-            ChannelComparison { channel: rate, is_measured: false, measured: a, simulated: b, origin: 0.0, differences }
+            let [differences, held] =
+                [rows, held].map(|rows| self::differences(rate, t, &a.value, &b.value, rows.clone()));
+            let held = some(held);
+            ChannelComparison { channel: rate, is_measured: false, measured: a, simulated: b, origin: 0.0, differences, held }
         });
         found.push(ChannelComparison {
             channel: *channel,
@@ -69,6 +75,7 @@ pub(super) fn of(
             simulated,
             origin,
             differences,
+            held: some(held_differences),
         });
         found.extend(rates);
     }

@@ -67,8 +67,10 @@ pub struct Comparison {
     pub trace: MotionTrace,
     /// The quantities that both have, measured ones first, each before its rate.
     pub channels: Vec<ChannelComparison>,
-    /// The rows that are compared: within the run, up to the horizon.
+    /// The rows that are compared: of the run, from its t = 0 up to the horizon.
     pub rows: std::ops::Range<usize>,
+    /// The rows before them in which the block was held, both measured and in the run: they count for the alignment, but into no norm of the motion.
+    pub held: std::ops::Range<usize>,
     /// Half-cycles of the angle, measured with simulated.
     pub half_cycles: Vec<HalfCyclePair>,
     /// Impacts of the rocking block, measured with simulated.
@@ -93,8 +95,12 @@ impl Comparison {
         // A row that rounding puts beyond the end belongs to the run.
         let slack = 1e-9 * trace.end();
         let first = motion.t.partition_point(|t| *t < begin - slack);
+        let released = motion.t.partition_point(|t| *t < -slack);
         let last = motion.t.partition_point(|t| *t <= end + slack);
-        if last.saturating_sub(first) < FEWEST || !(motion.t.get(last.saturating_sub(1)).copied().unwrap_or(0.0) > 0.0)
+        // What moves in the rows that are compared, not how long the camera ran before.
+        let rows = first.max(released)..last;
+        let held = first..rows.start.max(first);
+        if rows.len() < FEWEST || !(motion.t.get(last.saturating_sub(1)).copied().unwrap_or(0.0) > 0.0)
         {
             let at = |row: Option<&f64>| row.map_or(f64::NAN, |t| t - alignment.shift);
             return Err(CompareError::Apart {
@@ -105,20 +111,21 @@ impl Comparison {
                 least: FEWEST,
             });
         }
-        let rows = first..last;
-        let channels = differences::of(&motion, &trace, &rows, settings.window);
+        let channels = differences::of(&motion, &trace, [&rows, &held], settings.window);
         let fit = |channel: Channel, pick: fn(&ChannelComparison) -> &LocalFit| {
             channels.iter().find(|found| found.channel == channel).map(pick)
         };
         let (mut half_cycles, mut impacts) = (Vec::new(), Vec::new());
         if let (Some(seen), Some(run)) = (fit(Channel::Phi, |c| &c.measured), fit(Channel::Phi, |c| &c.simulated)) {
-            let t = &motion.t[rows.clone()];
+            // The first half-cycle begins while the block is held.
+            let seen_rows = held.start..rows.end;
+            let t = &motion.t[seen_rows.clone()];
             // What may be noise of the measurement is no crossing, in neither of the motions.
-            let [a, b] = [seen, run].map(|fit| swing(t, fit, rows.clone(), seen.noise));
+            let [a, b] = [seen, run].map(|fit| swing(t, fit, seen_rows.clone(), seen.noise));
             half_cycles = pair_half_cycles(&a, &b);
             impacts = pair_impacts(&a, &b);
         }
-        Ok(Self { alignment, measured: motion, trace, channels, rows, half_cycles, impacts, settings })
+        Ok(Self { alignment, measured: motion, trace, channels, rows, held, half_cycles, impacts, settings })
     }
 
     /// The comparison of a quantity.

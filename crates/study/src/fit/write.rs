@@ -5,7 +5,7 @@ use crate::compare::{STYLE, fixed, horizon_note, motion_figures, sentences_of};
 use crate::write::{html_list, html_table, percent, power, short};
 use serde_json::{Value, json};
 use std::fmt::Write;
-use teeter_plot::{AxisError, Theme, escaped};
+use teeter_plot::{AxisError, escaped};
 use teeter_report::document;
 
 /// All files that a fit may write; the figures depend on the table.
@@ -241,7 +241,7 @@ pub fn page(fit: &Fit, title: &str, names: [&str; 3]) -> Result<String, AxisErro
         html_list(&sentences(fit)[fit.estimates.iter().filter(|found| found.value.is_finite()).count()..])
     );
     html.push_str("<section class=\"panel\"><h3>Motion</h3>\n<div class=\"pictures\">\n");
-    for (_, svg) in motion_figures(&fit.comparison, fit.before.as_ref(), Theme::Page)? {
+    for (_, svg) in motion_figures(&fit.comparison, fit.before.as_ref(), None)? {
         html.push_str(&svg);
     }
     html.push_str("</div>");
@@ -262,10 +262,10 @@ pub fn page(fit: &Fit, title: &str, names: [&str; 3]) -> Result<String, AxisErro
     Ok(document(&format!("Fitted to a measured motion: {title}"), &subtitle, STYLE, &html))
 }
 
-/// The figures for files, with their names.
+/// The figures for files, of a width in mm from 60 to 300, with their names.
 ///
 /// # Errors
 /// [`AxisError`] if a value can't be shown.
-pub fn figures(fit: &Fit) -> Result<Vec<(String, String)>, AxisError> {
-    motion_figures(&fit.comparison, fit.before.as_ref(), Theme::Paper)
+pub fn figures(fit: &Fit, width: f64) -> Result<Vec<(String, String)>, AxisError> {
+    motion_figures(&fit.comparison, fit.before.as_ref(), Some(width))
 }

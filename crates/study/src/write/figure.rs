@@ -28,21 +28,26 @@ struct Point {
     row: usize,
 }
 
-/// The figures for files, with their names: one for each quantity of the scene.
+/// The figures for files, of a width in mm from 60 to 300, with their names: one for each quantity of the scene.
 ///
 /// # Errors
 /// [`AxisError`] if a measured time or error can't be shown on a logarithmic axis.
-pub fn figures(study: &Tradeoff) -> Result<Vec<(String, String)>, AxisError> {
-    let named = themed(study, Theme::Paper)?.into_iter();
+pub fn figures(study: &Tradeoff, width: f64) -> Result<Vec<(String, String)>, AxisError> {
+    let named = themed(study, Some(width))?.into_iter();
     Ok(named.map(|(quantity, svg)| (format!("{}.svg", quantity.word()), svg)).collect())
 }
 
-/// The figures in the colours of files or of pages; a page has a legend of its own, which is as
+/// The figures for files of a width, mm, or without one for pages; a page has a legend of its own, which is as
 /// large as its text at any width.
-pub(super) fn themed(study: &Tradeoff, theme: Theme) -> Result<Vec<(Quantity, String)>, AxisError> {
+pub(super) fn themed(study: &Tradeoff, width: Option<f64>) -> Result<Vec<(Quantity, String)>, AxisError> {
     let shown = Quantity::ALL.into_iter().map(|quantity| (quantity, points(study, quantity)));
     let figure = |(quantity, points): (Quantity, Vec<Point>)| {
-        Ok((quantity, figure(study, quantity, &points, theme == Theme::Paper)?.theme(theme).to_svg()))
+        let figure = figure(study, quantity, &points, width.is_some())?;
+        let svg = match width {
+            Some(width) => figure.width_mm(width).to_svg(),
+            None => figure.theme(Theme::Page).to_svg(),
+        };
+        Ok((quantity, svg))
     };
     shown.filter(|(_, points)| !points.is_empty()).map(figure).collect()
 }

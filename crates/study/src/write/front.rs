@@ -4,7 +4,7 @@ use super::figure::{schemes, themed};
 use super::percent;
 use crate::Tradeoff;
 use std::fmt::Write;
-use teeter_plot::{AxisError, Theme, escaped};
+use teeter_plot::{AxisError, escaped};
 
 /// The shapes of marks beside the names of schemes, as teeter-plot draws them in turn.
 const SHAPES: [&str; 4] = [
@@ -30,7 +30,7 @@ pub(super) const STYLE: &str = "\
 
 /// Writes the section with the figures of all quantities that the scene has, one of them shown.
 pub(super) fn section(html: &mut String, study: &Tradeoff) -> Result<(), AxisError> {
-    let figures = themed(study, Theme::Page)?;
+    let figures = themed(study, None)?;
     let Some((first, _)) = figures.first() else { return Ok(()) };
     html.push_str(
         "<section id=\"front\" class=\"panel\" aria-labelledby=\"front-title\"><h2 id=\"front-title\">Error over CPU time</h2>\n\

@@ -113,9 +113,8 @@ struct PortraitSeries {
 #[derive(Serialize)]
 pub(super) struct ForceData {
     borders: Vec<f64>,
-    /// Of the unit in which they are plotted: its prefix, and by what N are multiplied.
-    prefix: &'static str,
-    factor: f64,
+    /// Of the units in which normal and tangential forces are plotted, by contacts: the prefix, and by what N are multiplied.
+    units: Vec<[(&'static str, f64); 2]>,
     /// Length of the windows of `mean`, with its unit.
     window: String,
     /// Contacts whose tangential forces are rounding.
@@ -200,8 +199,7 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
     });
     ForceData {
         borders: panels.curves.borders().into_iter().map(time).collect(),
-        prefix: panels.force_unit.0,
-        factor: panels.force_unit.1,
+        units: panels.force_units.clone(),
         window: with_digits(window, "s", 3),
         frictionless: (0..panels.tangential.len()).filter(|pair| !panels.tangential[*pair]).collect(),
         points: points.collect(),

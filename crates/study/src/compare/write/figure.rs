@@ -14,22 +14,26 @@ const DASHED: usize = 7;
 /// Heights of the panels of the motion and of the difference, mm.
 const HEIGHTS: [f64; 2] = [52.0, 22.0];
 
-/// The figures for files, with their names.
+/// The figures for files, of a width in mm from 60 to 300, with their names.
 ///
 /// # Errors
 /// [`AxisError`] if a value can't be shown.
-pub fn svg_figures(comparison: &Comparison) -> Result<Vec<(String, String)>, AxisError> {
-    motion_figures(comparison, None, Theme::Paper)
+pub fn svg_figures(comparison: &Comparison, width: f64) -> Result<Vec<(String, String)>, AxisError> {
+    motion_figures(comparison, None, Some(width))
 }
 
-/// The figures in the colours of files or of pages; with `before`, also the motion before a fit.
+/// The figures for files of a width, mm, or without one for pages; with `before`, also the motion before a fit.
 pub(crate) fn motion_figures(
     comparison: &Comparison,
     before: Option<&Comparison>,
-    theme: Theme,
+    width: Option<f64>,
 ) -> Result<Vec<(String, String)>, AxisError> {
     let all = comparison.channels.iter().map(|found| {
-        let svg = figure(comparison, before, found.channel)?.theme(theme).to_svg();
+        let figure = figure(comparison, before, found.channel)?;
+        let svg = match width {
+            Some(width) => figure.width_mm(width).to_svg(),
+            None => figure.theme(Theme::Page).to_svg(),
+        };
         Ok((format!("{}.svg", found.channel.word()), svg))
     });
     all.collect()

@@ -24,6 +24,7 @@ pub fn json(comparison: &Comparison, block: &str, run: &str, measured: &str) -> 
                 "noise": found.is_measured.then_some(found.measured.noise),
                 "origin": found.channel.has_own_origin().then_some(found.origin),
                 "rows": d.rows,
+                "held": found.held.map(|held| json!({ "rms": held.rms, "max": held.max, "mean": held.mean, "rows": held.rows })),
             });
             (found.channel.word().to_owned(), value)
         })

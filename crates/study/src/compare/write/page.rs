@@ -5,7 +5,7 @@ use crate::compare::{ChannelComparison, Comparison, ImpactPair};
 use crate::measured::{Channel, Sign};
 use crate::write::{html_list, html_table, percent, power, short};
 use std::fmt::Write;
-use teeter_plot::{AxisError, Theme, escaped};
+use teeter_plot::{AxisError, escaped};
 use teeter_report::document;
 
 pub(crate) const STYLE: &str = "\
@@ -42,7 +42,13 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
     )];
     let rows = &comparison.rows;
     let last = measured.t.get(rows.end.saturating_sub(1)).copied().unwrap_or(0.0);
-    let to = format!("{} of {} measured rows are compared, up to t = {} s", rows.len(), measured.t.len(), short(last));
+    let to = format!(
+        "{} of {} measured rows are compared, from {} up to t = {} s",
+        rows.len(),
+        measured.t.len(),
+        if comparison.trace.is_held() { "the release of the block, t = 0," } else { "t = 0" },
+        short(last)
+    );
     texts.push(match settings.horizon {
         Some(horizon) if horizon < comparison.trace.end() => {
             format!("{to}: beyond t = {} s the simulated motion isn’t predictable (its horizon)", short(horizon))
@@ -50,6 +56,19 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
         Some(_) => to,
         None => format!("{to}; the horizon of the run is not known: `teeter run --horizon` finds it"),
     });
+    if !comparison.held.is_empty() {
+        let apart = comparison.channels.iter().filter(|found| found.is_measured).filter_map(|found| {
+            let (unit, factor) = found.channel.shown();
+            let gap = if unit == "°" { "" } else { " " };
+            Some(format!("{} by {}{gap}{unit}", found.channel.word(), power(factor * found.held?.rms)))
+        });
+        texts.push(format!(
+            "before t = 0 both blocks are held: {} more rows count for the alignment, but not into the differences; in them the motions are \
+             apart (root mean square) {}",
+            comparison.held.len(),
+            apart.collect::<Vec<_>>().join(", ")
+        ));
+    }
     texts.push(format!(
         "both motions are sampled at the measured times ({} s apart) and smoothed by parabolas through {} rows; rates are \
          those of the parabolas",
@@ -95,7 +114,7 @@ fn quantity_row(found: &ChannelComparison) -> Vec<String> {
         share(d.rms),
         value(d.max),
         share(d.max),
-        format!("{}\u{a0}s{}", fixed(d.max_at, 4), if d.max_at < 0.0 { ", before the release" } else { "" }),
+        format!("{}\u{a0}s", fixed(d.max_at, 4)),
         value(d.mean),
         if found.is_measured { value(found.measured.noise) } else { "–".to_owned() },
     ]
@@ -110,7 +129,7 @@ pub fn page(comparison: &Comparison, title: &str, names: [&str; 3]) -> Result<St
     let subtitle = format!("{run} · {measured} · block {block} · teeter {}", env!("CARGO_PKG_VERSION"));
     let mut html = format!("<p class=\"headline\">{}</p>\n", escaped(&headline(comparison)));
     html.push_str("<section class=\"panel\"><h3>Motion</h3>\n<div class=\"pictures\">\n");
-    for (_, svg) in motion_figures(comparison, None, Theme::Page)? {
+    for (_, svg) in motion_figures(comparison, None, None)? {
         html.push_str(&svg);
     }
     html.push_str("</div>");
@@ -122,8 +141,8 @@ pub fn page(comparison: &Comparison, title: &str, names: [&str; 3]) -> Result<St
     ));
     html.push_str(
         "<p class=\"note\">Simulated minus measured, over the rows compared; shares are of the largest measured value, of a position from its \
-         mean. Times are those of the run. Before its t = 0 the simulated block is held where it is released, and the measured one stands still: a \
-         difference there is noise, or a start that isn’t that of the scene.</p></section>\n",
+         mean. Times are those of the run. Rows before its t = 0, in which the block is held, are drawn but don’t count: a difference there is noise, or \
+         a start that isn’t that of the scene.</p></section>\n",
     );
     html.push_str(&half_cycles(comparison));
     html.push_str(&impacts(comparison));

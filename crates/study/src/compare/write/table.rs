@@ -13,7 +13,7 @@ fn cell(text: &mut String, value: Option<f64>) {
 
 /// `compare.csv`: a row for each row of the measured table: `t` (of the run), `t_measured` (as in the
 /// table), for each quantity its smoothed measured and simulated values (SI), and whether the row is
-/// compared.
+/// compared: `yes`, `no`, or `held` before the release.
 #[must_use]
 pub fn rows_csv(comparison: &Comparison) -> String {
     let mut text = "t,t_measured".to_owned();
@@ -28,7 +28,11 @@ pub fn rows_csv(comparison: &Comparison) -> String {
             cell(&mut text, Some(channel.measured.value[row]));
             cell(&mut text, Some(channel.simulated.value[row]));
         }
-        text.push_str(if comparison.rows.contains(&row) { ",yes\n" } else { ",no\n" });
+        text.push_str(match row {
+            row if comparison.rows.contains(&row) => ",yes\n",
+            row if comparison.held.contains(&row) => ",held\n",
+            _ => ",no\n",
+        });
     }
     text
 }

@@ -125,12 +125,13 @@ pub struct StudyFigure {
 }
 
 impl StudyFigure {
-    /// As SVG for files, with their names.
+    /// As SVG for files, of a width in mm from 60 to 300, with their names.
     #[must_use]
-    pub fn svgs(&self) -> Vec<(String, String)> {
+    pub fn svgs(&self, width: f64) -> Vec<(String, String)> {
+        let svg = |figure: &Figure| figure.clone().width_mm(width).to_svg();
         let more = self.more.iter().enumerate();
-        let more = more.map(|(k, (_, figure))| (format!("figures/{}-{}.svg", self.name, k + 2), figure.to_svg()));
-        std::iter::once((format!("figures/{}.svg", self.name), self.figure.to_svg())).chain(more).collect()
+        let more = more.map(|(k, (_, figure))| (format!("figures/{}-{}.svg", self.name, k + 2), svg(figure)));
+        std::iter::once((format!("figures/{}.svg", self.name), svg(&self.figure))).chain(more).collect()
     }
 
     /// As SVG for a page.
