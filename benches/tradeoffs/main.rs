@@ -11,6 +11,9 @@ use teeter_study::{Advice, Quantity, StudyScene, TARGETS, Tradeoff, runner, writ
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
+/// The width of the figures, mm.
+const FIGURE_WIDTH: f64 = 120.0;
+
 fn main() -> Result<()> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     // Cargo adds flags of its own.
@@ -26,7 +29,7 @@ fn main() -> Result<()> {
             continue;
         }
         let study = studied(&path, &stem)?;
-        let figures = write::figures(&study)?;
+        let figures = write::figures(&study, FIGURE_WIDTH)?;
         let figure = figures.iter().find(|(name, _)| name == "accuracy.svg").map(|(_, svg)| svg);
         if let Some(svg) = figure {
             std::fs::write(root.join(format!("docs/figures/tradeoff-{stem}.svg")), svg)?;

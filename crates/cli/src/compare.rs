@@ -124,7 +124,12 @@ struct Names<'a> {
 }
 
 /// Writes the files, and the sentences to standard output.
-fn write_all(comparison: &Comparison, reserved: Reserved, names: &Names<'_>, width_mm: f64) -> Result<(), Box<dyn Error>> {
+fn write_all(
+    comparison: &Comparison,
+    reserved: Reserved,
+    names: &Names<'_>,
+    width_mm: f64,
+) -> Result<(), Box<dyn Error>> {
     let Names { title, run, measured, block } = *names;
     let figures = svg_figures(comparison, width_mm)?;
     let html = page(comparison, title, [run, measured, block])?;

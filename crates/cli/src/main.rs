@@ -620,10 +620,37 @@ fn main() -> ExitCode {
         Command::Compare { run, measured, offset, out, figure_width, quiet, force } => {
             compare::compare(&compare::Options { run, measured, offset, out, figure_width, quiet, force }).into()
         }
-        Command::Fit { scene, measured, vary, offset, samples, seed, jobs, base, set, out, figure_width, quiet, force } => {
+        Command::Fit {
+            scene,
+            measured,
+            vary,
+            offset,
+            samples,
+            seed,
+            jobs,
+            base,
+            set,
+            out,
+            figure_width,
+            quiet,
+            force,
+        } => {
             let (samples, jobs) = (samples.map(usize::from), jobs.map(usize::from));
-            let options =
-                fit::Options { scene, base, set, measured, vary, offset, samples, seed, jobs, out, figure_width, quiet, force };
+            let options = fit::Options {
+                scene,
+                base,
+                set,
+                measured,
+                vary,
+                offset,
+                samples,
+                seed,
+                jobs,
+                out,
+                figure_width,
+                quiet,
+                force,
+            };
             fit::fit(&options).into()
         }
         Command::Solvers => solve::list().into(),

@@ -84,7 +84,12 @@ fn draw(console: Console, results: &Results, title: &str, figure_width: f64) -> 
 }
 
 /// Writes the figures of studies, their tables and their page; returns their notes.
-fn write_figures(results: &Results, title: &str, studies: &[Ensemble], figure_width: f64) -> Result<(), Box<dyn Error>> {
+fn write_figures(
+    results: &Results,
+    title: &str,
+    studies: &[Ensemble],
+    figure_width: f64,
+) -> Result<(), Box<dyn Error>> {
     let figures = study_figures(studies)?;
     for figure in &figures {
         for (name, svg) in figure.svgs(1e3 * figure_width) {

@@ -92,7 +92,9 @@ fn figures_of_runs_and_records_become_pdf_of_the_width_of_a_column() {
 fn letters_that_the_font_lacks_are_named() {
     let folder = place("letters");
     let figure = |text: &str| {
-        format!("<svg width=\"60mm\" viewBox=\"0 0 240 40\"><text x=\"4\" y=\"20\" font-size=\"11\">{text}</text></svg>")
+        format!(
+            "<svg width=\"60mm\" viewBox=\"0 0 240 40\"><text x=\"4\" y=\"20\" font-size=\"11\">{text}</text></svg>"
+        )
     };
     std::fs::write(folder.join("known.svg"), figure("Блок ω Ångström ế")).unwrap();
     std::fs::write(folder.join("unknown.svg"), figure("石 Блок")).unwrap();

@@ -334,7 +334,10 @@ fn what_comes_down_on_a_side_says_on_which() {
 fn what_overturned_says_on_which_side_it_ended() {
     let ran = scene("ended", &format!("{TIME}[ground]\n{ROCKER}tilt = '-13 deg'\n{FLOOR}"));
     let headline = ran.summary["headline"].as_str().unwrap();
-    assert!(headline.starts_with("`b` overturned to the right at t = 0 s, came to rest on its right side at t = "), "{headline}");
+    assert!(
+        headline.starts_with("`b` overturned to the right at t = 0 s, came to rest on its right side at t = "),
+        "{headline}"
+    );
     assert_eq!(ran.verdict("b")["lies_on"], "right side");
 }
 

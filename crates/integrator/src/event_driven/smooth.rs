@@ -1,5 +1,6 @@
 //! The smooth motion between two events: accelerations under forces, with the contacts that press.
 
+use super::FLOOR;
 use super::linear::Linear;
 use super::modes::{Mode, Pressing};
 use crate::subsystem::dot;
@@ -37,7 +38,7 @@ const SINGULAR: f64 = 1e-12;
 /// A contact has at least this part of the largest normal force where friction is shared.
 const LEAST_SHARE: f64 = 1e-6;
 
-/// By how much contacts were corrected, as a part of the largest coordinate and of the largest velocity.
+/// By how much contacts were corrected, as a part of the largest coordinate and of the largest velocity, at least [`FLOOR`].
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Correction {
     pub(super) of_places: f64,
@@ -46,7 +47,7 @@ pub(super) struct Correction {
 
 fn largest_change(before: &[f64], after: &[f64]) -> f64 {
     let change = before.iter().zip(after).map(|(before, after)| (after - before).abs()).fold(0.0, f64::max);
-    change / before.iter().fold(f64::MIN_POSITIVE, |largest: f64, x| largest.max(x.abs()))
+    change / before.iter().fold(FLOOR, |largest, x| largest.max(x.abs()))
 }
 
 /// The right-hand side.

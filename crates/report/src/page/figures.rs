@@ -266,7 +266,8 @@ impl Plots<'_> {
             let mut panels = Vec::new();
             let weight = values(&normal).fold(0.0, f64::max) / self.panels.force_units[pair][0].1;
             let units = self.panels.force_units[pair];
-            for ((what, mut lines), (prefix, factor)) in [("Normal", normal), ("Tangential", tangential)].into_iter().zip(units)
+            for ((what, mut lines), (prefix, factor)) in
+                [("Normal", normal), ("Tangential", tangential)].into_iter().zip(units)
             {
                 let (unit, least) = (format!("{prefix}N"), 1e-6 * strongest * factor);
                 if what == "Tangential" && !self.panels.tangential[pair] {

@@ -139,8 +139,7 @@ fn force_units(recorder: &PageRecorder, forces: &[Option<ForceCurve>]) -> Vec<[(
     let unit = |size: f64| if size > 0.0 && size * common.1 < SMALL { prefix(size) } else { common };
     let of = |contact: &ContactDrawn| {
         let own = || forces[contact.first..contact.first + contact.points.len()].iter().flatten();
-        let sizes =
-            [seen(own().flat_map(|forces| &forces.normal)), seen(own().flat_map(|forces| &forces.tangential))];
+        let sizes = [seen(own().flat_map(|forces| &forces.normal)), seen(own().flat_map(|forces| &forces.tangential))];
         sizes.map(unit)
     };
     recorder.scenery.contacts.iter().map(of).collect()

@@ -86,9 +86,10 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     let beside = |text: String| if largest.is_empty() { text } else { format!("{text} ({largest})") };
     // Where nothing is said, it rests on its base.
     let side = side_below(of).filter(|_| of.lies_on != Some(Side::Base)).unwrap_or_default();
-    let then_rested = of.rests_from.filter(|_| of.what != Fate::Rests).map_or_else(String::new, |t| {
-        format!(", came to rest{} at {}", side_below(of).unwrap_or_default(), time(t))
-    });
+    let then_rested = of
+        .rests_from
+        .filter(|_| of.what != Fate::Rests)
+        .map_or_else(String::new, |t| format!(", came to rest{} at {}", side_below(of).unwrap_or_default(), time(t)));
     match of.what {
         Fate::Overturned => format!("overturned to the {way}{at}{then_rested}"),
         Fate::Left => {
@@ -161,7 +162,8 @@ fn all(verdict: &[BodyVerdict]) -> String {
         let is_over = |of: &&&BodyVerdict| matches!(of.lies_on, Some(Side::Left | Side::Right | Side::Top));
         let slid = (resting.iter().filter(|of| of.what == Fate::Slid).count(), "after sliding");
         let over = (resting.iter().filter(is_over).count(), "on another side than the base");
-        let told = [slid, over].into_iter().filter(|(count, _)| *count > 0).map(|(count, how)| format!("{count} {how}"));
+        let told =
+            [slid, over].into_iter().filter(|(count, _)| *count > 0).map(|(count, how)| format!("{count} {how}"));
         let told = told.collect::<Vec<_>>().join(", ");
         let how = if told.is_empty() { told } else { format!(" ({told})") };
         let what = if last == 0.0 {

@@ -55,7 +55,8 @@ impl Side {
         }
         // The direction that points down, of a rectangle as drawn.
         let is = |direction: f64| (down - direction).sin().abs() < ALIGNED && (down - direction).cos() > 0.0;
-        let is_rectangle = [left, right] == [0, 1] && block.corner_name(0) == "bottom-left" && block.corner_count() == 4;
+        let is_rectangle =
+            [left, right] == [0, 1] && block.corner_name(0) == "bottom-left" && block.corner_count() == 4;
         Some(match (is_rectangle, from, to) {
             (true, ..) if is(0.0) => Self::Right,
             (true, ..) if is(PI) => Self::Left,

@@ -418,7 +418,7 @@ fn a_base_of_flush_parts_rocks_as_one_in_one_piece() {
         let parts: Vec<String> = (0..count).map(part).collect();
         format!("on = 'ground'\nat = '0 cm'\nparts = [{}]\n", parts.join(", "))
     };
-    let bricks = "width = '3 cm'\nheight = '13.5 cm'\non = 'brick-1'\nat = '1.5 cm'\n\
+    let bricks = "width = '3 cm'\nheight = '13.5 cm'\non = 'brick-1'\nat = '0 cm'\n\
                   [block.brick]\nfixed = true\ndensity = '2700 kg/m^3'\ndepth = '3 cm'\nwidth = '10 cm'\nheight = '5 cm'\n\
                   position = ['-5 cm', '-2.5 cm']\nrepeat = { count = 2, shift = ['10 cm', '0 m'] }\n";
     let angle = |shape: &str, step: &str| {

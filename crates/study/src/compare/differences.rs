@@ -66,7 +66,15 @@ pub(super) fn of(
             let [differences, held] =
                 [rows, held].map(|rows| self::differences(rate, t, &a.value, &b.value, rows.clone()));
             let held = some(held);
-            ChannelComparison { channel: rate, is_measured: false, measured: a, simulated: b, origin: 0.0, differences, held }
+            ChannelComparison {
+                channel: rate,
+                is_measured: false,
+                measured: a,
+                simulated: b,
+                origin: 0.0,
+                differences,
+                held,
+            }
         });
         found.push(ChannelComparison {
             channel: *channel,

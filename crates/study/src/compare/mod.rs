@@ -100,8 +100,7 @@ impl Comparison {
         // What moves in the rows that are compared, not how long the camera ran before.
         let rows = first.max(released)..last;
         let held = first..rows.start.max(first);
-        if rows.len() < FEWEST || !(motion.t.get(last.saturating_sub(1)).copied().unwrap_or(0.0) > 0.0)
-        {
+        if rows.len() < FEWEST || !(motion.t.get(last.saturating_sub(1)).copied().unwrap_or(0.0) > 0.0) {
             let at = |row: Option<&f64>| row.map_or(f64::NAN, |t| t - alignment.shift);
             return Err(CompareError::Apart {
                 from: at(motion.t.first()),
