@@ -291,10 +291,11 @@ impl Fates {
         let standing = standing::at_start(&watch.blocks, layout, model, state)?;
         for (number, (watched, stands)) in watch.blocks.iter().zip(standing).enumerate() {
             let angle = state.q[layout.blocks[number].range.start + 2];
-            // What was placed on something stands there, however far it is tilted.
-            let tilt = if watched.on.is_some() { layout.tilt(number, &state.q) } else { 0.0 };
+            // What was placed on something stands there on its base, however far that slopes or it is tilted: on a slope beyond α it is past the
+            // point of no return from the start.
+            let about = if watched.on.is_some() { 0.0 } else { angle };
             let stood = if stands { watched.place(layout, number, state) } else { None };
-            let (began, stands_from) = (stands.then_some(angle - tilt), stands.then_some(state.t));
+            let (began, stands_from) = (stands.then_some(about), stands.then_some(state.t));
             self.blocks.push(Seen { began, angle, stands_from, stood, ..Seen::default() });
         }
         self.look(watch, layout, state.t, state);
