@@ -24,7 +24,8 @@ fn a_chip_of_a_micrometre_has_axes_that_one_can_read() {
     let unit = |id: &str| panel(&page, id).unwrap()["unit"].as_str().unwrap().to_owned();
     assert_eq!(["x", "y", "energy"].map(unit), ["nm", "µm", "zJ"]);
     // The weight is 91 fN; the peaks of the impacts, of some pN, are cut.
-    assert_eq!((&page["forces"]["prefix"], &page["forces"]["factor"]), (&"f".into(), &1e15.into()));
+    let unit = &page["forces"]["units"][0][0];
+    assert_eq!((&unit[0], &unit[1]), (&"f".into(), &1e15.into()));
     let figures = figures(&run.page);
     let forces = figure(&figures, "contact_forces.svg");
     for wanted in ["Normal force (fN)", "Time t (ms)", "peaks cut, up to 2"] {

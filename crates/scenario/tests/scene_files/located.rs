@@ -425,17 +425,16 @@ fn a_base_of_flush_parts_rocks_as_one_in_one_piece() {
         let (simulation, seen) = run(&scene(shape), step);
         (simulation.state.q[2], seen.impacts.iter().map(|(t, ..)| *t).fold(0.0, f64::max))
     };
-    for step in ["100 us", "250 us", "1 ms", "2 ms", "4 ms"] {
+    for (step, milliseconds) in [("100 us", 0.1_f64), ("250 us", 0.25), ("1 ms", 1.0), ("2 ms", 2.0), ("4 ms", 4.0)] {
         let whole = angle("width = '3 cm'\nheight = '13.5 cm'\non = 'ground'\nat = '0 cm'\n", step);
+        // The first point that touches, by what the pivot has drifted, says when the base lands. A blow in two parts is off by 1e-2.
+        let enough = 1.5e-6 * milliseconds.powi(3);
         for (what, shape) in
             [("two", parts(2)), ("three", parts(3)), ("seven", parts(7)), ("bricks", bricks.to_owned())]
         {
             let divided = angle(&shape, step);
-            assert!(
-                (divided.0 - whole.0).abs() < 1e-4 * 5_f64.to_radians(),
-                "{what}, {step}: {divided:?} and {whole:?}"
-            );
-            assert!((divided.1 - whole.1).abs() < 1e-5, "{what}, {step}: {divided:?} and {whole:?}");
+            assert!((divided.0 - whole.0).abs() < enough, "{what}, {step}: {divided:?} rad, s and {whole:?}");
+            assert!((divided.1 - whole.1).abs() < enough, "{what}, {step}: {divided:?} rad, s and {whole:?}");
         }
     }
 }
