@@ -13,7 +13,7 @@ use teeter_detect::{BodyId, Candidate};
 const TOUCHING: f64 = 10.0;
 
 /// Closed contacts drift by no more than is passed in this part of the scheme's step.
-const HIDDEN: f64 = 0.1;
+const HIDDEN: f64 = 0.01;
 
 impl<const D: usize> MoreauJeanLocated<D> {
     /// Lets the contacts that touch at `from` strike, at time `end` (s): its velocities and what is
@@ -115,7 +115,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 bodies.any(|body| closed.sides.iter().any(|side| side.body == body))
             };
             let drift = self.near.iter().filter(shares).map(|closed| closed.gap.abs()).fold(0.0, f64::max);
-            if drift == 0.0 || self.step.closed.binary_search(&candidate.id).is_ok() {
+            let is_known = drift == 0.0 || self.step.closed.binary_search(&candidate.id).is_ok();
+            // A beam takes each blow by itself.
+            if is_known || self.is_with_elastic(model, &candidate.sides.map(|side| side.body)) {
                 continue;
             }
             let rate = rate_at(&mut self.one, model, &from.q, candidate, &from.v)?;
