@@ -239,8 +239,8 @@ impl Summits {
 }
 
 impl PlacedSide<'_> {
-    /// Whether the part is there: of what is below the side's line but past another side, all of the part lies between. A
-    /// block that tips over the end of a beam turns its far side to it.
+    /// Whether a point lies inside the part. One that is behind this side's line may still be outside, past another side: when a block tips
+    /// over the end of a beam, the end is behind the line of its far side.
     fn holds(&self, place: &Vector<2>) -> bool {
         let Outline { corners, normals, radius, frame, .. } = &self.outline;
         let local = frame.local(place);

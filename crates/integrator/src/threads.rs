@@ -45,7 +45,7 @@ pub(crate) struct Batch<const D: usize> {
 }
 
 impl<const D: usize> Batch<D> {
-    /// Takes these islands, which rise, of the given sizes; their problems are to be filled in.
+    /// Begins a batch of these islands, with their numbers of contacts; the caller fills in the problems.
     pub(crate) fn begin(
         &mut self,
         islands: impl Iterator<Item = usize>,

@@ -60,8 +60,8 @@ const STEP_LEFT: f64 = 1e-9;
 /// A contact that pulls by this part of its scale within a step has opened in it; one whose friction is over its limit by as much slides.
 const PULLED: f64 = 1e-3;
 
-/// Contacts that press leave no more than this of velocities to correct after a step of the method, in parts of the largest: their
-/// accelerations are known to a millionth ([`super::turning`]). Of places they leave what that makes of a step, far less.
+/// A step of the method is refused where velocities (`JUMP`) or coordinates (`SHIFT`) at its contacts need a larger correction than this part of
+/// the largest: accelerations of contacts are known to a millionth ([`super::turning`]), and what that makes of coordinates is far less.
 const JUMP: f64 = 1e-6;
 const SHIFT: f64 = 1e-9;
 

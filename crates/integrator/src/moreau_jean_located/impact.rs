@@ -12,7 +12,7 @@ use teeter_detect::{BodyId, Candidate};
 /// Contacts with a gap of up to so many tolerances touch.
 const TOUCHING: f64 = 10.0;
 
-/// Closed contacts drift by no more than is passed in this part of the scheme's step.
+/// The time of an impact is uncertain by no more than this part of the scheme's step: a larger gap of a closed contact is not drift.
 const HIDDEN: f64 = 0.01;
 
 impl<const D: usize> MoreauJeanLocated<D> {
@@ -100,11 +100,11 @@ impl<const D: usize> MoreauJeanLocated<D> {
         closed.try_for_each(add)
     }
 
-    /// The time (s) to which it is known when the candidates that strike touch: what the closed contacts of their bodies have drifted
-    /// from their surfaces, over the velocity with which they approach; 0 without any.
+    /// By how much the time of the impact is uncertain, s: the distance that closed contacts of the striking bodies have drifted from their
+    /// surfaces, over the velocity of approach; 0 without closed contacts.
     ///
-    /// Whatever else touches within that time may do so now. Points on one line under a base land together; with a pivot that has
-    /// sunk in by some nanometres the nearer ones would land first, and share a blow that is the last one's.
+    /// What touches within that time strikes in the same impact. Points on one line under a base land together; but where the pivot has
+    /// sunk in by some nanometres, the points nearer to it would strike first, and take part of the blow.
     fn hidden_time(&mut self, model: &Model<D>, from: &State, work: &Workspace<D>) -> Result<f64, Mismatch> {
         let touching = TOUCHING * self.tolerance(&from.q);
         let moves = |body: BodyId| model.owner(body).is_some_and(|(_, part, _)| part.row > 0 && !part.is_prescribed());
