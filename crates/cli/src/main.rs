@@ -175,9 +175,8 @@ enum Command {
         /// Override a key of the scene, such as beam.table.thickness="2 mm"; may be repeated
         #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
         set: Vec<(String, String)>,
-        /// Width of the figures: 84 mm and 174 mm are one and two columns of most journals
-        #[arg(long, value_name = "WIDTH", default_value = "120 mm", value_parser = record::figure_width)]
-        figure_width: f64,
+        #[command(flatten)]
+        figure_width: record::FigureWidth,
         /// Print only the advice and errors
         #[arg(long)]
         quiet: bool,
@@ -212,9 +211,8 @@ enum Command {
         #[arg(long, value_name = "DIR", num_args = 2.., requires = "out")]
         #[arg(conflicts_with_all = ["jobs", "shard", "resume", "merge", "sweep"])]
         compare: Vec<PathBuf>,
-        /// Width of the figures: 84 mm and 174 mm are one and two columns of most journals
-        #[arg(long, value_name = "WIDTH", default_value = "120 mm", value_parser = record::figure_width)]
-        figure_width: f64,
+        #[command(flatten)]
+        figure_width: record::FigureWidth,
         /// Print only errors
         #[arg(long)]
         quiet: bool,
@@ -296,9 +294,8 @@ enum Command {
         /// Folder for the results (default: that of the run with `-compare`)
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
-        /// Width of the figures: 84 mm and 174 mm are one and two columns of most journals
-        #[arg(long, value_name = "WIDTH", default_value = "120 mm", value_parser = record::figure_width)]
-        figure_width: f64,
+        #[command(flatten)]
+        figure_width: record::FigureWidth,
         /// Print only the results and errors
         #[arg(long)]
         quiet: bool,
@@ -339,9 +336,8 @@ enum Command {
         /// Folder for the results (default: `runs/` with the name of the scene file and `-fit`)
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
-        /// Width of the figures: 84 mm and 174 mm are one and two columns of most journals
-        #[arg(long, value_name = "WIDTH", default_value = "120 mm", value_parser = record::figure_width)]
-        figure_width: f64,
+        #[command(flatten)]
+        figure_width: record::FigureWidth,
         /// Print only the results and errors
         #[arg(long)]
         quiet: bool,
@@ -567,17 +563,36 @@ fn main() -> ExitCode {
             check::check(&check::Options { scene, base, set, extent: model }).into()
         }
         Command::Tradeoff { scene, base, out, set, figure_width, quiet, force } => {
-            tradeoff::tradeoff(&tradeoff::Options { scene, base, out, set, figure_width, quiet, force }).into()
+            tradeoff::tradeoff(&tradeoff::Options {
+                scene,
+                base,
+                out,
+                set,
+                figure_width: figure_width.metres,
+                quiet,
+                force,
+            })
+            .into()
         }
         Command::Sweep { sweep: Some(sweep), out, jobs, shard, resume, figure_width, quiet, force, .. } => {
             let jobs = jobs.map(usize::from);
-            sweep::sweep(&sweep::Options { sweep, out, jobs, shard, resume, figure_width, force, quiet }).into()
+            sweep::sweep(&sweep::Options {
+                sweep,
+                out,
+                jobs,
+                shard,
+                resume,
+                figure_width: figure_width.metres,
+                force,
+                quiet,
+            })
+            .into()
         }
         Command::Sweep { sweep: None, out, compare, figure_width, quiet, force, .. } if !compare.is_empty() => {
-            sweep::compare(&compare, &out.unwrap_or_default(), figure_width, force, quiet).into()
+            sweep::compare(&compare, &out.unwrap_or_default(), figure_width.metres, force, quiet).into()
         }
         Command::Sweep { sweep: None, out, merge, figure_width, quiet, force, .. } => {
-            sweep::merge_shards(&merge, &out.unwrap_or_default(), figure_width, force, quiet).into()
+            sweep::merge_shards(&merge, &out.unwrap_or_default(), figure_width.metres, force, quiet).into()
         }
         Command::Record {
             file,
@@ -618,7 +633,16 @@ fn main() -> ExitCode {
             record::record(&record::Options { file, keys, json, figure_width, out, force }).into()
         }
         Command::Compare { run, measured, offset, out, figure_width, quiet, force } => {
-            compare::compare(&compare::Options { run, measured, offset, out, figure_width, quiet, force }).into()
+            compare::compare(&compare::Options {
+                run,
+                measured,
+                offset,
+                out,
+                figure_width: figure_width.metres,
+                quiet,
+                force,
+            })
+            .into()
         }
         Command::Fit {
             scene,
@@ -647,7 +671,7 @@ fn main() -> ExitCode {
                 seed,
                 jobs,
                 out,
-                figure_width,
+                figure_width: figure_width.metres,
                 quiet,
                 force,
             };

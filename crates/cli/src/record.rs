@@ -36,6 +36,14 @@ pub(crate) struct Options {
     pub(crate) force: bool,
 }
 
+/// The option of commands that write figures with their results.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(crate) struct FigureWidth {
+    /// Width of the figures: 84 mm and 174 mm are one and two columns of most journals
+    #[arg(long = "figure-width", value_name = "WIDTH", default_value = "120 mm", value_parser = figure_width)]
+    pub(crate) metres: f64,
+}
+
 /// `84 mm` and the like, in m.
 pub(crate) fn figure_width(text: &str) -> Result<f64, String> {
     match quantity::parse(text, Dimension::LENGTH) {
