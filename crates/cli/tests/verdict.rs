@@ -270,8 +270,13 @@ fn scene(name: &str, text: &str) -> Ran {
 fn scene_beside(name: &str, text: &str, rows: &str) -> Ran {
     let folder = folder(&format!("verdict-{name}"));
     std::fs::write(folder.join("quake.csv"), rows).unwrap();
+    written(&folder, &format!("{HEAD}{text}"))
+}
+
+/// A scene with a head of its own.
+fn written(folder: &Path, text: &str) -> Ran {
     let file = folder.join("scene.toml");
-    std::fs::write(&file, format!("{HEAD}{text}")).unwrap();
+    std::fs::write(&file, text).unwrap();
     Ran::of(&file, &folder.join("out"), &[])
 }
 
@@ -374,6 +379,35 @@ fn on_an_incline_beyond_alpha_what_stands_on_its_base_overturns() {
 }
 
 #[test]
+fn gravity_that_leans_is_the_same_as_an_incline() {
+    let lean = 5.0_f64.to_radians();
+    // Downhill is to the left of a slope that rises to the right.
+    let gravity = format!("['{} m/s^2', '{} m/s^2']", -9.81 * lean.sin(), -9.81 * lean.cos());
+    let head = HEAD.replace("'9.81 m/s^2'", &gravity);
+    for tilt in [0, 4, -10] {
+        let rocker = format!("{ROCKER}tilt = '{tilt} deg'\n{FLOOR}");
+        let incline = scene(&format!("slope-{tilt}"), &format!("{TIME}[ground]\nincline = '5 deg'\n{rocker}"));
+        let leaning = written(&folder(&format!("verdict-leaning-{tilt}")), &format!("{head}{TIME}[ground]\n{rocker}"));
+        let part = |ran: &Ran| ran.verdict("b")["max_phi_over_alpha"].as_f64().unwrap();
+        assert!((part(&incline) - part(&leaning)).abs() < 1e-6, "{tilt}: {} {}", part(&incline), part(&leaning));
+        assert_eq!(what(&incline), what(&leaning), "{tilt}");
+        assert_eq!(incline.verdict("b")["lies_on"], leaning.verdict("b")["lies_on"], "{tilt}");
+    }
+}
+
+#[test]
+fn what_stopped_just_before_the_end_does_not_slide_on() {
+    // √(R/g) is 84 ms; friction stops it after 204 ms.
+    let text = |end: &str| format!("[time]\nend = '{end}'\nstep = '200 us'\n[ground]\n{ROCKER}velocity = ['0.5 m/s', '0 m/s']\n{FLOOR}");
+    let text = |end: &str| text(end).replace("height = '13.5 cm'", "height = '1 cm'").replace("friction = 0.5", "friction = 0.25");
+    let headline = |name: &str, end: &str| scene(name, &text(end)).summary["headline"].as_str().unwrap().to_owned();
+    assert!(headline("slides", "0.19 s").contains("slides on"));
+    let still = headline("still", "0.21 s");
+    assert!(still.contains("and is still since t = 20"), "{still}");
+    assert!(headline("rested", "0.4 s").contains("came to rest"));
+}
+
+#[test]
 fn a_disc_that_rolls_does_not_overturn() {
     let text = format!(
         "{TIME}[ground]\n[block.b]\nmaterial = 'a'\nradius = '5 cm'\ndepth = '3 cm'\nposition = ['0 m', '5 cm']\n\
@@ -405,6 +439,23 @@ fn shaken_past_alpha_and_back_is_not_overturned() {
     assert!(past > 1.0 && came_back, "the scene must pass α and come back: {past}");
     check_all(&ran, "shaken");
     assert_eq!(what(&ran).0, "rocks", "{}", ran.summary["headline"]);
+}
+
+#[test]
+fn a_block_that_slides_on_to_the_next_beam_has_not_left_it() {
+    let beam = |name: &str, x: &str| {
+        format!("[beam.{name}]\nmaterial = 'a'\nspan = '36 cm'\nwidth = '3 cm'\nthickness = '1 cm'\nelements = 10\nposition = ['{x}', '0 m']\n")
+    };
+    let text = format!(
+        "[time]\nend = '0.3 s'\nstep = '200 us'\n{}{}\
+         [block.b]\nmaterial = 'a'\nwidth = '4 cm'\nheight = '1 cm'\ndepth = '3 cm'\non = 't'\nat = '30 cm'\nvelocity = ['1 m/s', '0 m/s']\n\
+         [contact.f]\nbetween = ['b', '*']\nfriction = 0.05\n",
+        beam("t", "0 m"),
+        beam("u", "36 cm")
+    );
+    let ran = scene("next-beam", &text);
+    assert!(*ran.column("b.x").last().unwrap() > 0.45);
+    assert_eq!(what(&ran), ("slid", None), "{}", ran.summary["headline"]);
 }
 
 #[test]

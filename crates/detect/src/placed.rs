@@ -232,6 +232,12 @@ pub(crate) struct BodyFrame {
 }
 
 impl BodyFrame {
+    /// A frame at a place, turned by an angle (rad).
+    #[cfg(test)]
+    pub(crate) fn at(origin: Vector<2>, angle: f64) -> Self {
+        Self { origin, axis: Vector::<2>::new(angle.cos(), angle.sin()) }
+    }
+
     pub(crate) fn of(body: BodyId, at: &dyn Geometry<2>) -> Self {
         let mut places = [Vector::zeros(); 2];
         at.place(body, &[Vector::zeros(), Vector::x()], &mut places);

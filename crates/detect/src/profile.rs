@@ -81,6 +81,9 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// What lies along a piece beside a crest still touches the crest, up to this angle, rad.
 const ALONG: f64 = 1e-9;
 
+/// A body that lies along a piece has no corner that points into it, beyond this angle, rad: more than a base turns when it sinks in.
+const POINTING: f64 = 0.02;
+
 impl Profile {
     /// The profile through these points, m.
     ///
@@ -211,7 +214,7 @@ pub(crate) fn each(
         let below = profile.height(place.x) - place.y;
         (low, high, depth) = (low.min(place.x), high.max(place.x), depth.max(below));
         let reach = (margin + outline.radius).max(below);
-        over.pieces_of(&place, reach, below, |piece| near(over.corner_on_piece(k, piece)));
+        over.pieces_of(k, &place, reach, below, |piece| near(over.corner_on_piece(k, piece)));
     }
     let reach = outline.radius + margin.max(depth);
     for joint in profile.joints_between(low - reach, high + reach) {
@@ -239,8 +242,9 @@ pub(crate) fn located(
 impl Over<'_> {
     /// Hands the pieces to `each` that a corner at `place`, `below` the ground by so much (m), can
     /// touch: those that it is over; of those that it is in the nearest, and what meets that in a
-    /// valley.
-    fn pieces_of(&self, place: &Vector<2>, reach: f64, below: f64, mut each: impl FnMut(usize)) {
+    /// valley. What it is in without pointing there is touched by a side, at a crest: a base that has sunk into one flank of a crest a
+    /// little, and slides down, passes the crest with a corner that is nearer to the other flank, from inside.
+    fn pieces_of(&self, corner: usize, place: &Vector<2>, reach: f64, below: f64, mut each: impl FnMut(usize)) {
         let profile = self.profile;
         let pieces = profile.pieces_between(place.x - reach, place.x + reach);
         let height = |piece: usize| profile.pieces[piece].height(place);
@@ -249,7 +253,9 @@ impl Over<'_> {
         let rounding =
             ROUNDING * pieces.clone().fold(place.amax(), |most, piece| most.max(profile.pieces[piece].origin.amax()));
         let nearest = if below > 0.0 {
-            pieces.clone().filter(over).max_by(|a, b| height(*a).total_cmp(&height(*b)))
+            let struck = pieces.clone().filter(over).filter(|piece| self.points_into(corner, *piece));
+            let Some(nearest) = struck.max_by(|a, b| height(*a).total_cmp(&height(*b))) else { return };
+            Some(nearest)
         } else {
             None
         };
@@ -265,6 +271,17 @@ impl Over<'_> {
                 each(piece);
             }
         }
+    }
+
+    /// Whether no corner beside this one is further in a piece's solid, as where the corner strikes it.
+    fn points_into(&self, corner: usize, piece: usize) -> bool {
+        let Outline { corners, frame, .. } = self.outline;
+        let inward = -frame.unturned(&self.ground.turned(&self.profile.pieces[piece].normal));
+        let n = corners.len();
+        [(corner + 1) % n, (corner + n - 1) % n].iter().all(|beside| {
+            let side = corners[*beside] - corners[corner];
+            inward.dot(&side) <= POINTING * side.norm()
+        })
     }
 
     /// The contact of a corner, or of the rounding about it, with a piece or its line.
@@ -289,7 +306,14 @@ impl Over<'_> {
         let Outline { first, radius, frame, .. } = self.outline;
         let near = nearest(self.outline, &frame.local(&self.ground.point(&place)))?;
         let corner = match near.on {
-            On::Side(side) => return self.crest_on_side(joint, side).filter(|touch| touch.room >= 0.0),
+            On::Side(side) => {
+                let on = |side: usize| self.crest_on_side(joint, side).filter(|touch| touch.room >= 0.0);
+                let n = self.outline.corners.len();
+                let beside = || [side + 1, side + n - 1].into_iter().filter_map(|beside| on(beside % n));
+                // Deeper in than it is from the corner, it is nearer to the side beside the one that lies on it.
+                let inside = near.distance < *radius;
+                return on(side).or_else(|| beside().filter(|_| inside).max_by(|a, b| a.gap.total_cmp(&b.gap)));
+            }
             On::Corner(corner) if *radius > 0.0 => corner,
             On::Corner(_) => return None,
         };
@@ -362,5 +386,33 @@ mod tests {
         }
         let bends: Vec<_> = profile.joints.iter().map(|joint| joint.bend).collect();
         assert_eq!(bends, [Bend::Valley, Bend::Crest, Bend::Valley]);
+    }
+
+    /// A square that lies on the right flank of a ridge, sunk in by a micrometre, with a corner just before the ridge or behind it: it is in
+    /// the left flank's ground there, but can only strike it with another corner.
+    #[test]
+    fn a_corner_strikes_no_flank_into_which_it_does_not_point() {
+        let depth = 1e-6;
+        let corners = [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]].map(Vector::<2>::from);
+        let normals = [[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]].map(Vector::<2>::from);
+        for height in [0.2, 0.5, 1.0] {
+            let profile = profile(&[[-1.0, -height], [0.0, 0.0], [1.0, -height]]).unwrap();
+            let slope = f64::atan(height);
+            let normal = Vector::<2>::new(slope.sin(), slope.cos());
+            for along in [-3e-6, -0.5e-6, 0.5e-6, 3e-6] {
+                let place = Vector::<2>::new(slope.cos(), -slope.sin()) * along - normal * depth;
+                let frame = BodyFrame::at(place, -slope);
+                let outline = Outline { first: 0, corners: &corners, normals: &normals, radius: 0.0, frame };
+                let mut found = Vec::new();
+                each(&profile, &outline, &BodyFrame::at(Vector::zeros(), 0.0), 0.0, |touch| {
+                    found.push((touch.normal, touch.gap));
+                });
+                // The corner in front, and the ridge or the corner behind it.
+                assert_eq!(found.len(), 2, "{height}, {along}: {found:?}");
+                for (n, gap) in found {
+                    assert!((n - normal).norm() < 1e-12 && (gap + depth).abs() < 1e-12, "{height}, {along}: {n} {gap}");
+                }
+            }
+        }
     }
 }

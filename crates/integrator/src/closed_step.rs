@@ -6,6 +6,7 @@
 //! [`MoreauJeanClosed`](crate::MoreauJeanClosed).
 
 mod guard;
+mod together;
 
 use crate::contact::tangential;
 use crate::laws::is_impact;
@@ -19,6 +20,7 @@ use crate::{
 pub(crate) use guard::{Guard, Guarded};
 use teeter_contact::Outcome;
 use teeter_detect::{Candidate, Candidates, ContactId};
+use together::Landing;
 
 /// Up to so many contacts an attempt starts from the impulses of the step before; with more, from
 /// those of the attempt before. Stacks of fewer blocks take up to a quarter more iterations with
@@ -60,6 +62,10 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     /// What was found of the new ones.
     found: Candidates<D>,
     found_rooms: Vec<f64>,
+    /// What other contacts land with; memory.
+    landings: Vec<Landing>,
+    /// Of each part of the model, whether it is known how fast its points are: not of a beam.
+    rigid: Vec<bool>,
     /// The impulses of the attempt before, of many contacts: where the solver starts.
     tried: WarmStart,
     /// The part of the step that is taken: an approach that forces make within a whole step is no
@@ -111,6 +117,8 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             new: Vec::new(),
             found: Vec::new(),
             found_rooms: Vec::new(),
+            landings: Vec::new(),
+            rigid: Vec::new(),
             tried: WarmStart::default(),
             of_step: 1.0,
             resting_shift: Vec::new(),
@@ -135,6 +143,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
     ) -> Result<(), StepError> {
         let contacts = model.contacts_to_expect();
         self.step.start_motion(model, state, work)?;
+        self.rigid.clear();
         self.resize(model);
         for candidates in [&mut self.middle, &mut self.ahead, &mut self.start, &mut self.found, &mut work.candidates] {
             candidates.reserve(contacts);
@@ -146,6 +155,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         for ids in [&mut self.closed, &mut self.looked, &mut self.new] {
             ids.reserve(contacts);
         }
+        self.landings.reserve(contacts);
         self.resting_shift.reserve(contacts);
         self.slides.reserve(contacts);
         self.guarded.reserve(contacts);
@@ -238,6 +248,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             if !self.close_what_sinks(model, from, work)? {
                 return Ok(outcome);
             }
+            self.close_what_lands_too(model, span.h, work)?;
             work.counts.refused_attempts += 1;
         }
     }
@@ -275,6 +286,9 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.v_free.resize(model.size().v, 0.0);
         self.q_mid.resize(model.size().q, 0.0);
         self.q_ahead.resize(model.size().q, 0.0);
+        if self.rigid.len() != model.parts().len() {
+            self.find_what_is_rigid(model);
+        }
     }
 
     /// Finds frames and gaps at q̃_m and q̃ of the closed contacts that haven't been looked at in this

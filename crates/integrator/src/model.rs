@@ -536,6 +536,11 @@ impl<const D: usize> Model<D> {
         self.parts.iter().map(|part| part.system.fastest(&v[part.v.clone()])).fold(0.0, f64::max)
     }
 
+    /// Whether a body can move, and not only as prescribed.
+    pub(crate) fn moves(&self, body: BodyId) -> bool {
+        self.owner(body).is_some_and(|(_, part, _)| part.row > 0 && !part.is_prescribed())
+    }
+
     /// The relative velocity u = v_0 − v_1 of a candidate in its frame, by its Jacobian rows at
     /// `q`, m/s.
     ///

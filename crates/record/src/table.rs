@@ -329,8 +329,10 @@ mod tests {
             let record = read(table).unwrap();
             assert_eq!((record.dt(), record.accelerations()), (0.5, &[1.0, -2.0, 3.0][..]), "{table}");
         }
-        let record = Record::read_with_step("acc (g)\n1\n-2\n", "R", Some(0.02)).unwrap();
-        assert_eq!((record.dt(), record.accelerations()), (0.02, &[STANDARD_GRAVITY, -2.0 * STANDARD_GRAVITY][..]));
+        for heading in ["acc (g)", "acc [gn]"] {
+            let record = Record::read_with_step(&format!("{heading}\n1\n-2\n"), "R", Some(0.02)).unwrap();
+            assert_eq!((record.dt(), record.accelerations()), (0.02, &[STANDARD_GRAVITY, -2.0 * STANDARD_GRAVITY][..]));
+        }
     }
 
     #[test]
@@ -407,7 +409,7 @@ mod tests {
         );
         assert_eq!(
             message("t,v [m/s]\n0,1\n1,1\n"),
-            "line 1: `m/s` is not a known unit of acceleration: m/s^2, cm/s^2, mm/s^2, gal, g"
+            "line 1: `m/s` is not a known unit of acceleration: m/s^2, cm/s^2, mm/s^2, gal, g, gn"
         );
         assert_eq!(message("t [h],a\n0,1\n1,1\n"), "line 1: `h` is not a known unit of time: s, ms");
         assert_eq!(

@@ -101,6 +101,9 @@ pub struct BodyVerdict {
     /// The last peak of its rocking, rad; of one that did not cross zero yet the largest angle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub last_peak: Option<f64>,
+    /// Since when it is still, of one that is so at the end, but not for long enough to rest, s.
+    #[serde(skip)]
+    pub(crate) still_from: Option<f64>,
     /// From when on it stands, s: 0, or when it settled; none of what flies or tumbles on.
     #[serde(skip)]
     pub(crate) stands_from: Option<f64>,
@@ -227,6 +230,11 @@ impl Watch {
 }
 
 impl Watched {
+    /// The slope of what carries it against the level of gravity, rad.
+    fn slope(&self, q: &[f64]) -> f64 {
+        self.carrier.slope(q) - self.outline.as_ref().map_or(0.0, Outline::level)
+    }
+
     /// Where its base stands along what carries it, m: put flat about the foot on which it is tilted.
     fn place(&self, layout: &Layout, number: usize, state: &State) -> Option<f64> {
         let [left, right] = self.feet?;
@@ -326,7 +334,7 @@ impl Fates {
                 seen.stance = KnownStance(Some(stance));
             }
             if let Some(mut stance) = stance {
-                let slope = watched.carrier.slope(&state.q);
+                let slope = watched.slope(&state.q);
                 if let Some(part) = stance.part(q[2], slope) {
                     seen.part = Some(seen.part.map_or(part, |most| most.max(part)));
                 }
@@ -451,8 +459,7 @@ impl Seen {
             _ => (Fate::Moves, None, None),
         };
         let lies_on = rests.and(watched.outline.as_ref()).and_then(|outline| {
-            let turned = self.angle - watched.carrier.slope(&state.q);
-            Side::below(block, outline, turned)
+            Side::below(block, outline, self.angle - watched.slope(&state.q))
         });
         let leans = rests.is_some() && lies_on.is_none() && watched.outline.is_some();
         BodyVerdict {
@@ -467,6 +474,7 @@ impl Seen {
             slid,
             max_phi_over_alpha: self.part,
             last_peak: peak.filter(|_| what == Fate::Rocks).map(|peak| peak.phi),
+            still_from: self.still.filter(|_| rests.is_none()),
             stands_from: self.stands_from,
             on_its_way: rocking
                 .filter(|monitor| what == Fate::Rocks && monitor.count() == 0)

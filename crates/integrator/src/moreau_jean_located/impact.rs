@@ -7,7 +7,7 @@ use crate::{
     ContactError, Keep, Mismatch, Model, Over, PhaseEnd, PhaseKind, Responses, Rule, State, StepError, Vector,
     Workspace,
 };
-use teeter_detect::{BodyId, Candidate};
+use teeter_detect::Candidate;
 
 /// Contacts with a gap of up to so many tolerances touch.
 const TOUCHING: f64 = 10.0;
@@ -107,11 +107,10 @@ impl<const D: usize> MoreauJeanLocated<D> {
     /// sunk in by some nanometres, the points nearer to it would strike first, and take part of the blow.
     fn hidden_time(&mut self, model: &Model<D>, from: &State, work: &Workspace<D>) -> Result<f64, Mismatch> {
         let touching = TOUCHING * self.tolerance(&from.q);
-        let moves = |body: BodyId| model.owner(body).is_some_and(|(_, part, _)| part.row > 0 && !part.is_prescribed());
         let mut hidden = 0.0_f64;
         for candidate in &work.candidates {
             let shares = |closed: &&Candidate<D>| {
-                let mut bodies = candidate.sides.iter().map(|side| side.body).filter(|body| moves(*body));
+                let mut bodies = candidate.sides.iter().map(|side| side.body).filter(|body| model.moves(*body));
                 bodies.any(|body| closed.sides.iter().any(|side| side.body == body))
             };
             let drift = self.near.iter().filter(shares).map(|closed| closed.gap.abs()).fold(0.0, f64::max);

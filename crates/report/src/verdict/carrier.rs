@@ -9,6 +9,9 @@ use teeter_scenario::simulation::Layout;
 /// Beams bend down by less than this part of their span: what is below that has left them.
 const BENT: f64 = 0.5;
 
+/// Beams whose heights differ by less than this part of a block's size continue each other.
+const LEVEL: f64 = 0.01;
+
 /// What carries a block.
 #[derive(Debug)]
 pub(super) struct Carrier {
@@ -18,6 +21,8 @@ pub(super) struct Carrier {
     root: On,
     /// The slope of fixed ground, or of a profile under the block relative to moving ground, rad.
     incline: f64,
+    /// Other beams that continue the one it stands on, by their numbers, and where their left ends are while their supports don't move, m.
+    beside: Vec<(usize, [f64; 2])>,
     /// The lowest that anything is at which could hold a block: none without beams or ground.
     floor: Floor,
 }
@@ -97,7 +102,11 @@ impl Carrier {
                     .fold(f64::INFINITY, f64::min),
             },
         };
-        Self { on: of(support(number)), root: of(root), incline, floor }
+        let beside = match support(number) {
+            Some(SupportingBody::Beam(beam)) => continued(scene, number, beam),
+            _ => Vec::new(),
+        };
+        Self { on: of(support(number)), root: of(root), incline, beside, floor }
     }
 
     /// The slope of the ground that carries the block, rad; 0 of other carriers.
@@ -140,16 +149,19 @@ impl Carrier {
         cos * (at[0] - origin[0]) + sin * (at[1] - origin[1])
     }
 
-    /// Past which end of its beam a point is; `None` for a block that no beam carries.
+    /// Past which end of its beam, and off those that continue it, a point is; `None` for a block that no beam carries.
     pub(super) fn past_end(&self, at: [f64; 2], layout: &Layout, q: &[f64]) -> Option<Option<Way>> {
         let On::Beam(beam, position) = self.on else { return None };
-        let x = at[0] - beam_origin(beam, position, layout, q)[0];
-        let span = layout.beams[beam].beam.spec().span;
-        Some(match x {
-            x if x < 0.0 => Some(Way::Left),
-            x if x > span => Some(Way::Right),
-            _ => None,
-        })
+        let past = |beam: usize, position: [f64; 2]| {
+            let x = at[0] - beam_origin(beam, position, layout, q)[0];
+            match x {
+                x if x < 0.0 => Some(Way::Left),
+                x if x > layout.beams[beam].beam.spec().span => Some(Way::Right),
+                _ => None,
+            }
+        };
+        let is_on_another = || self.beside.iter().any(|(beam, position)| past(*beam, *position).is_none());
+        Some(past(beam, position).filter(|_| !is_on_another()))
     }
 
     /// Whether a block with its mass centre at a point is below everything that could hold it.
@@ -167,6 +179,17 @@ impl Carrier {
             }
         }
     }
+}
+
+/// The beams that a block can touch and that lie level with the one it stands on: it may slide on to them.
+fn continued(scene: &Scene, block: usize, beam: usize) -> Vec<(usize, [f64; 2])> {
+    let level = LEVEL * scene.blocks[block].radius();
+    let others = scene.contacts.iter().filter(|contact| contact.block == block);
+    let others = others.filter_map(|contact| match contact.surface {
+        SupportingBody::Beam(other) if other != beam => Some((other, scene.beams[other].position)),
+        _ => None,
+    });
+    others.filter(|(_, position)| (position[1] - scene.beams[beam].position[1]).abs() <= level).collect()
 }
 
 /// The left end of a beam's axis, which moves with its supports, m.

@@ -108,6 +108,7 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         }
         Fate::Rests => beside(format!("came to rest{side}{at}")),
         Fate::Slid if of.rests_from.is_some() => beside(format!("{slid} and came to rest{side}{at}")),
+        Fate::Slid if of.still_from.is_some() => beside(format!("{slid}{}", still(of))),
         Fate::Slid => beside(format!("slides on, {slid} so far")),
         Fate::Rocks if of.on_its_way.is_some() => {
             let now = of.on_its_way.map_or_else(String::new, angle);
@@ -120,8 +121,15 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             let drift = if drift { format!(", {slid}") } else { String::new() };
             beside(format!("rocks on{peak}{drift}"))
         }
+        Fate::Moves if of.still_from.is_some() => beside(format!("moved{}", still(of))),
         Fate::Moves => beside("still moves".to_owned()),
     }
+}
+
+/// That a block is still at the end, in words, of one that is not known to rest.
+fn still(of: &BodyVerdict) -> String {
+    let since = of.still_from.map_or_else(String::new, time);
+    format!(" and is still since {since}, too short a time to tell whether it rests")
 }
 
 /// How a block that rests does so, in words after "came to rest"; `None` of what has no sides.

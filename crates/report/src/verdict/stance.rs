@@ -5,7 +5,7 @@
 //! points of no return, between two of them there is one minimum: a side on which it lies.
 
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 use teeter_scenario::scene::BlockScene;
 
 /// The sides to which a block can go: the right (φ falls) and the left (φ rises).
@@ -88,6 +88,11 @@ impl Outline {
         });
         let corners = corners.collect();
         Some(Self { corners, size: block.radius(), gamma: gravity[1].atan2(gravity[0]) })
+    }
+
+    /// The slope of what is level for gravity, rad.
+    pub(super) fn level(&self) -> f64 {
+        self.gamma + FRAC_PI_2
     }
 
     /// How far down the block reaches from its mass centre where this direction of it points down, m.
@@ -177,7 +182,7 @@ impl Stance {
         [self.right.top, self.left.top]
     }
 
-    /// |φ|/α at an angle (rad) on ground with a slope (rad): the way from standing flat there to the point of no return, in parts; `None` where the
+    /// |φ|/α at an angle (rad) on ground with a slope (rad) against the level of gravity: the way from standing flat there to the point of no return, in parts; `None` where the
     /// slope alone is past it.
     pub(crate) fn part(&self, angle: f64, slope: f64) -> Option<f64> {
         let turned = angle - self.flat - slope;

@@ -396,45 +396,72 @@ fn a_touch_that_is_over_by_the_end_of_a_step_is_found() {
     }
 }
 
+/// A rocking block of this shape.
+fn rocking_shape(shape: &str) -> String {
+    format!(
+        "[time]\nend = '0.96 s'\nstep = '1 ms'\n[ground]\n[contact.c]\nbetween = ['*', '*']\nfriction = 0.6\n\
+         [contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.6\n\
+         [block.b]\ndensity = '2700 kg/m^3'\ndepth = '3 cm'\ntilt = '5 deg'\n{shape}"
+    )
+}
+
+const WHOLE: &str = "width = '3 cm'\nheight = '13.5 cm'\non = 'ground'\nat = '0 cm'\n";
+
+/// The same of so many flush parts.
+fn parts(count: u32) -> String {
+    let width = 3.0 / f64::from(count);
+    let part = |k| {
+        format!("{{ width = '{width} cm', height = '13.5 cm', at = ['{} cm', '6.75 cm'] }}", (f64::from(k) + 0.5) * width)
+    };
+    let parts: Vec<String> = (0..count).map(part).collect();
+    format!("on = 'ground'\nat = '0 cm'\nparts = [{}]\n", parts.join(", "))
+}
+
+/// The same on two bricks, above their joint.
+const ON_BRICKS: &str = "width = '3 cm'\nheight = '13.5 cm'\non = 'brick-1'\nat = '0 cm'\n\
+                         [block.brick]\nfixed = true\ndensity = '2700 kg/m^3'\ndepth = '3 cm'\nwidth = '10 cm'\nheight = '5 cm'\n\
+                         position = ['-5 cm', '-2.5 cm']\nrepeat = { count = 2, shift = ['10 cm', '0 m'] }\n";
+
 /// Points on one line under a base land together, though the pivot has sunk in by some nanometres: a base of flush parts, or one on
 /// flush bricks, loses as much as one in one piece.
 #[test]
 fn a_base_of_flush_parts_rocks_as_one_in_one_piece() {
-    let scene = |shape: &str| {
-        format!(
-            "[time]\nend = '0.96 s'\nstep = '1 ms'\n[ground]\n[contact.c]\nbetween = ['*', '*']\nfriction = 0.6\n\
-             [contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.6\n\
-             [block.b]\ndensity = '2700 kg/m^3'\ndepth = '3 cm'\ntilt = '5 deg'\n{shape}"
-        )
-    };
-    let parts = |count: u32| {
-        let width = 3.0 / f64::from(count);
-        let part = |k| {
-            format!(
-                "{{ width = '{width} cm', height = '13.5 cm', at = ['{} cm', '6.75 cm'] }}",
-                (f64::from(k) + 0.5) * width
-            )
-        };
-        let parts: Vec<String> = (0..count).map(part).collect();
-        format!("on = 'ground'\nat = '0 cm'\nparts = [{}]\n", parts.join(", "))
-    };
-    let bricks = "width = '3 cm'\nheight = '13.5 cm'\non = 'brick-1'\nat = '0 cm'\n\
-                  [block.brick]\nfixed = true\ndensity = '2700 kg/m^3'\ndepth = '3 cm'\nwidth = '10 cm'\nheight = '5 cm'\n\
-                  position = ['-5 cm', '-2.5 cm']\nrepeat = { count = 2, shift = ['10 cm', '0 m'] }\n";
     let angle = |shape: &str, step: &str| {
-        let (simulation, seen) = run(&scene(shape), step);
+        let (simulation, seen) = run(&rocking_shape(shape), step);
         (simulation.state.q[2], seen.impacts.iter().map(|(t, ..)| *t).fold(0.0, f64::max))
     };
     for (step, milliseconds) in [("100 us", 0.1_f64), ("250 us", 0.25), ("1 ms", 1.0), ("2 ms", 2.0), ("4 ms", 4.0)] {
-        let whole = angle("width = '3 cm'\nheight = '13.5 cm'\non = 'ground'\nat = '0 cm'\n", step);
+        let whole = angle(WHOLE, step);
         // The first point that touches, by what the pivot has drifted, says when the base lands. A blow in two parts is off by 1e-2.
         let enough = 1.5e-6 * milliseconds.powi(3);
         for (what, shape) in
-            [("two", parts(2)), ("three", parts(3)), ("seven", parts(7)), ("bricks", bricks.to_owned())]
+            [("two", parts(2)), ("three", parts(3)), ("seven", parts(7)), ("bricks", ON_BRICKS.to_owned())]
         {
             let divided = angle(&shape, step);
             assert!((divided.0 - whole.0).abs() < enough, "{what}, {step}: {divided:?} rad, s and {whole:?}");
             assert!((divided.1 - whole.1).abs() < enough, "{what}, {step}: {divided:?} rad, s and {whole:?}");
+        }
+    }
+}
+
+/// The same in the closed scheme, whose pivots sink in by micrometres.
+#[test]
+fn flush_parts_land_as_one_in_the_closed_scheme() {
+    let energy = |shape: &str, step: &str| {
+        let sets = [("time.scheme", "moreau-jean-closed"), ("time.step", step), ("time.end", "0.7 s")];
+        let sets = sets.map(|(key, value)| (key.to_owned(), format!("\"{value}\"")));
+        let resolved = teeter_scenario::load(rocking_shape(shape).as_bytes(), "f", "f", &sets).unwrap();
+        let mut simulation = Simulation::new(&resolved.scene).unwrap();
+        assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+        let ledger = &simulation.state.ledger;
+        assert!(ledger.positive_contact_work.largest <= 1e-15 * ledger.scale, "{:?}", ledger.positive_contact_work);
+        ledger.sum.contact
+    };
+    for step in ["50 us", "100 us", "250 us"] {
+        let whole = energy(WHOLE, step);
+        for (what, shape) in [("two", parts(2)), ("three", parts(3)), ("seven", parts(7)), ("bricks", ON_BRICKS.to_owned())] {
+            let divided = energy(&shape, step);
+            assert!((divided / whole - 1.0).abs() < 0.03, "{what}, {step}: contacts took {divided} J and {whole} J");
         }
     }
 }

@@ -325,3 +325,37 @@ fn blows_in_a_valley_are_located_whatever_rounding_says() {
         assert!(tally.max_penetration < 2e-5, "{x}: {:e} m deep", tally.max_penetration);
     }
 }
+
+/// A block that has landed on the right flank of a ridge slides down behind it, sunk in by some micrometres: its upper corner passes the
+/// ridge in the ground, nearer to the left flank than to the one that the block lies on.
+#[test]
+fn a_block_that_has_sunk_in_slides_past_a_ridge() {
+    let (slope, speed, fall) = (0.5_f64.atan(), 0.3, 0.02);
+    let (tangent, normal) = ([slope.cos(), -slope.sin()], [slope.sin(), slope.cos()]);
+    let place = [0, 1].map(|k| 0.1 * tangent[k] + (0.15 + fall) * normal[k]);
+    let scene = |left: &str| {
+        format!(
+            "[world]\ngravity = '9.81 m/s^2'\n[time]\nend = '0.8 s'\nstep = '100 us'\nscheme = 'moreau-jean-closed'\n\
+             [ground]\nprofile = {{ points = [['{left}', '-1 m'], ['0 m', '0 m'], ['6 m', '-3 m']] }}\n\
+             [block.b]\ndensity = '1000 kg/m^3'\nwidth = '0.5 m'\nheight = '0.3 m'\ndepth = '1 m'\n\
+             position = ['{} m', '{} m']\nangle = '{} rad'\nvelocity = ['{} m/s', '{} m/s']\n\
+             [contact.c]\nbetween = ['b', 'ground']\nfriction = 0\n",
+            place[0],
+            place[1],
+            -slope,
+            speed * tangent[0],
+            speed * tangent[1]
+        )
+    };
+    // A roof, and a wall that is nearly upright.
+    for left in ["-2 m", "-1 mm"] {
+        let mut simulation = Simulation::new(&resolved(&scene(left)).scene).unwrap();
+        assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+        let state = &simulation.state;
+        let along = state.v[0] * tangent[0] + state.v[1] * tangent[1];
+        let exact = speed + 9.81 * slope.sin() * 0.8;
+        assert!((along - exact).abs() < 1e-6, "{left}: {along} m/s, not {exact}");
+        assert!((state.q[2] + slope).abs() < 1e-4, "{left}: {}", state.q[2]);
+        assert!(state.tally.max_penetration < 1e-4, "{left}: {:e} m", state.tally.max_penetration);
+    }
+}
