@@ -398,8 +398,12 @@ fn gravity_that_leans_is_the_same_as_an_incline() {
 #[test]
 fn what_stopped_just_before_the_end_does_not_slide_on() {
     // √(R/g) is 84 ms; friction stops it after 204 ms.
-    let text = |end: &str| format!("[time]\nend = '{end}'\nstep = '200 us'\n[ground]\n{ROCKER}velocity = ['0.5 m/s', '0 m/s']\n{FLOOR}");
-    let text = |end: &str| text(end).replace("height = '13.5 cm'", "height = '1 cm'").replace("friction = 0.5", "friction = 0.25");
+    let text = |end: &str| {
+        format!("[time]\nend = '{end}'\nstep = '200 us'\n[ground]\n{ROCKER}velocity = ['0.5 m/s', '0 m/s']\n{FLOOR}")
+    };
+    let text = |end: &str| {
+        text(end).replace("height = '13.5 cm'", "height = '1 cm'").replace("friction = 0.5", "friction = 0.25")
+    };
     let headline = |name: &str, end: &str| scene(name, &text(end)).summary["headline"].as_str().unwrap().to_owned();
     assert!(headline("slides", "0.19 s").contains("slides on"));
     let still = headline("still", "0.21 s");
@@ -444,7 +448,9 @@ fn shaken_past_alpha_and_back_is_not_overturned() {
 #[test]
 fn a_block_that_slides_on_to_the_next_beam_has_not_left_it() {
     let beam = |name: &str, x: &str| {
-        format!("[beam.{name}]\nmaterial = 'a'\nspan = '36 cm'\nwidth = '3 cm'\nthickness = '1 cm'\nelements = 10\nposition = ['{x}', '0 m']\n")
+        format!(
+            "[beam.{name}]\nmaterial = 'a'\nspan = '36 cm'\nwidth = '3 cm'\nthickness = '1 cm'\nelements = 10\nposition = ['{x}', '0 m']\n"
+        )
     };
     let text = format!(
         "[time]\nend = '0.3 s'\nstep = '200 us'\n{}{}\

@@ -149,7 +149,10 @@ mod tests {
         let text = HEAD.replace("UNITS OF G", "UNITS OF CM/SEC**2. FILTER POINTS") + "NPTS= 2, DT= 1\n100 50\n";
         assert_eq!(read(&text).unwrap().accelerations(), [1.0, 0.5]);
         let message = read(&(HEAD.replace("OF G", "OF FURLONGS") + "NPTS= 2, DT= 1\n1 2\n")).unwrap_err();
-        assert_eq!(message, "line 3: `FURLONGS` is not a known unit of acceleration: m/s^2, cm/s^2, mm/s^2, gal, g, gn");
+        assert_eq!(
+            message,
+            "line 3: `FURLONGS` is not a known unit of acceleration: m/s^2, cm/s^2, mm/s^2, gal, g, gn"
+        );
     }
 
     #[test]

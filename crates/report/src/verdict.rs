@@ -458,9 +458,9 @@ impl Seen {
             _ if has_slid => (Fate::Slid, None, None),
             _ => (Fate::Moves, None, None),
         };
-        let lies_on = rests.and(watched.outline.as_ref()).and_then(|outline| {
-            Side::below(block, outline, self.angle - watched.slope(&state.q))
-        });
+        let lies_on = rests
+            .and(watched.outline.as_ref())
+            .and_then(|outline| Side::below(block, outline, self.angle - watched.slope(&state.q)));
         let leans = rests.is_some() && lies_on.is_none() && watched.outline.is_some();
         BodyVerdict {
             body: layout.blocks[number].name.clone(),

@@ -72,12 +72,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
     }
 
     /// Lists the contacts that have just been closed and are less deep than closed ones of the same bodies; returns the longest time, s.
-    fn find_landings(
-        &mut self,
-        model: &Model<D>,
-        h: f64,
-        work: &Workspace<D>,
-    ) -> Result<Option<f64>, Mismatch> {
+    fn find_landings(&mut self, model: &Model<D>, h: f64, work: &Workspace<D>) -> Result<Option<f64>, Mismatch> {
         self.landings.clear();
         let mut longest = None;
         for candidate in &work.candidates {

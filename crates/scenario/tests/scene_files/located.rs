@@ -411,7 +411,10 @@ const WHOLE: &str = "width = '3 cm'\nheight = '13.5 cm'\non = 'ground'\nat = '0 
 fn parts(count: u32) -> String {
     let width = 3.0 / f64::from(count);
     let part = |k| {
-        format!("{{ width = '{width} cm', height = '13.5 cm', at = ['{} cm', '6.75 cm'] }}", (f64::from(k) + 0.5) * width)
+        format!(
+            "{{ width = '{width} cm', height = '13.5 cm', at = ['{} cm', '6.75 cm'] }}",
+            (f64::from(k) + 0.5) * width
+        )
     };
     let parts: Vec<String> = (0..count).map(part).collect();
     format!("on = 'ground'\nat = '0 cm'\nparts = [{}]\n", parts.join(", "))
@@ -459,7 +462,9 @@ fn flush_parts_land_as_one_in_the_closed_scheme() {
     };
     for step in ["50 us", "100 us", "250 us"] {
         let whole = energy(WHOLE, step);
-        for (what, shape) in [("two", parts(2)), ("three", parts(3)), ("seven", parts(7)), ("bricks", ON_BRICKS.to_owned())] {
+        for (what, shape) in
+            [("two", parts(2)), ("three", parts(3)), ("seven", parts(7)), ("bricks", ON_BRICKS.to_owned())]
+        {
             let divided = energy(&shape, step);
             assert!((divided / whole - 1.0).abs() < 0.03, "{what}, {step}: contacts took {divided} J and {whole} J");
         }

@@ -146,3 +146,39 @@ fn points_that_are_no_convex_polygon_are_refused_with_the_corner() {
     assert!(told(&format!("{triangle}\nwidth = '1 m'")).contains("points already give"));
     assert!(told("points = [['0 m'], ['1 m', '0 m'], ['0 m', '1 m']]").contains("an array of two is expected, got 1"));
 }
+
+/// A block that slides over flush bricks goes as far as on one surface: its corner must not strike the end of the next brick by the last
+/// digits of its height.
+#[test]
+fn a_block_slides_over_flush_bricks_as_over_one() {
+    let slid = |scheme: &str, [width, chamfer, x, v, mu]: [f64; 5]| {
+        let chamfer = if chamfer > 0.0 { format!("chamfer = '{chamfer} m'\n") } else { String::new() };
+        let text = format!(
+            "[time]\nend = '0.6 s'\nstep = '1 ms'\nscheme = '{scheme}'\n[world]\ngravity = '9.81 m/s^2'\n[ground]\n\
+             [block.b]\ndensity = '1000 kg/m^3'\ndepth = '0.1 m'\nwidth = '{width} m'\nheight = '0.04 m'\n{chamfer}\
+             position = ['{x} m', '0.02 m']\nvelocity = ['{v} m/s', '0 m/s']\n\
+             [block.brick]\nfixed = true\ndensity = '1000 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.1 m'\nheight = '0.05 m'\n\
+             position = ['-0.25 m', '-0.025 m']\nrepeat = {{ count = 12, shift = ['0.1 m', '0 m'] }}\n\
+             [contact.c]\nbetween = ['b', 'brick-*']\nfriction = {mu}\n"
+        );
+        let mut simulation = simulation(&text, &[]);
+        run(&mut simulation);
+        let t = (v / (mu * 9.81)).min(0.6);
+        simulation.state.q[0] - x - (v * t - 0.5 * mu * 9.81 * t * t)
+    };
+    for of in [
+        [0.108, 0.0, -0.119, 1.3375, 0.1408],
+        [0.0734, 0.0, -0.0918, 1.3365, 0.2167],
+        [0.1091, 0.0, -0.0732, 1.3236, 0.1443],
+        [0.0536, 0.0, -0.107, 1.4655, 0.2027],
+        [0.0738, 0.01, -0.1122, 1.4159, 0.2159],
+        [0.1081, 0.01, -0.1192, 1.3375, 0.1408],
+        [0.0651, 0.005, -0.0944, 0.9152, 0.0916],
+        [0.1422, 0.005, -0.0897, 1.4985, 0.1584],
+    ] {
+        for scheme in ["event-driven", "moreau-jean-located", "moreau-jean-closed"] {
+            let off = slid(scheme, of);
+            assert!(off.abs() < 1e-6, "{scheme}, {of:?}: {off:e} m further than on one surface");
+        }
+    }
+}

@@ -57,6 +57,8 @@ const CHI_SQUARED_95: f64 = NORMAL_95 * NORMAL_95;
 /// Values beside the fitted one are looked at from this share of the range on, each `FARTHER` times as far away.
 const NEAREST: f64 = 2e-3;
 const FARTHER: f64 = 1.3;
+/// Values beside the fitted ones are better where their sum of squares is below this part of the fitted one's.
+const BETTER: f64 = 0.99;
 /// How often the distance between values that still fit and the next is halved.
 const HALVINGS: usize = 4;
 /// An interval by the standard error that is passed by less than this factor is confirmed by what is beside it.
@@ -70,6 +72,8 @@ pub(super) struct Confidence {
     pub(super) correlation: Vec<Vec<f64>>,
     pub(super) trade_offs: Vec<TradeOff>,
     pub(super) residual_correlation: f64,
+    /// Values beside the fitted ones that fit better than these.
+    pub(super) better: Option<Vec<f64>>,
 }
 
 /// From the covariance σ²(JᵀJ)⁻¹ at the fitted values, σ² being the mean square that is left. Where
@@ -171,7 +175,7 @@ pub(super) fn of(
     };
     let ways: Vec<Vec<f64>> = (0..keys.len()).map(way).collect();
     let errors: Vec<f64> = (0..keys.len()).map(error).collect();
-    let as_good = as_good(objective, fitted, &ways, &errors, variance, threads, evaluations);
+    let (as_good, better) = as_good(objective, fitted, &ways, &errors, variance, threads, evaluations);
     let estimates = names
         .into_iter()
         .enumerate()
@@ -189,7 +193,7 @@ pub(super) fn of(
             as_good: as_good.get(k).copied().flatten(),
         })
         .collect();
-    Some(Confidence { estimates, correlation, trade_offs, residual_correlation: rho })
+    Some(Confidence { estimates, correlation, trade_offs, residual_correlation: rho, better })
 }
 
 /// Values beside the fitted ones: of key `k` on one side, at growing distances. The other keys follow along `way`, by
@@ -213,7 +217,7 @@ fn beside(fitted: &Trial, k: usize, side: f64, way: &[f64], error: f64) -> Vec<V
 }
 
 /// The values of each key that fit as well as the fitted one, on both sides of it, if they go beyond what its standard
-/// error says.
+/// error says; and the best of those beside it, if they are better than the fitted ones.
 ///
 /// The motion is a rough function of the keys: each impact is shifted by the time step, and whole impacts come and go. At
 /// the bottom of a wide valley the differences then see its stones, and the standard error is far too small.
@@ -225,7 +229,7 @@ fn as_good(
     variance: f64,
     threads: usize,
     evaluations: &mut Vec<Evaluation>,
-) -> Vec<Option<(f64, f64)>> {
+) -> (Vec<Option<(f64, f64)>>, Option<Vec<f64>>) {
     let keys = objective.keys.len();
     let places: Vec<(usize, Vec<f64>)> = (0..keys)
         .flat_map(|k| [-1.0, 1.0].map(|side| (k, side)))
@@ -240,6 +244,9 @@ fn as_good(
         Evaluation { stage: "beside", values, cost }
     };
     evaluations.extend(places.iter().zip(&costs).map(|((_, at), cost)| tried(at, cost.unwrap_or(f64::INFINITY))));
+    let least = places.iter().zip(&costs).filter_map(|((_, at), cost)| Some((at, (*cost)?)));
+    let least = least.min_by(|a, b| a.1.total_cmp(&b.1));
+    let better = least.filter(|(_, cost)| *cost < BETTER * fitted.cost).map(|(at, _)| at.clone());
     let fits = |cost: f64| (cost - fitted.cost) * rows <= CHI_SQUARED_95 * variance;
     let fit = |number: usize| costs.get(number).is_some_and(|cost| cost.is_some_and(fits));
     let mut end = |k: usize, side: f64| -> f64 {
@@ -265,7 +272,7 @@ fn as_good(
         let is_wider = fitted.at[k] - low > limit || high - fitted.at[k] > limit;
         is_wider.then(|| (objective.keys[k].at(low), objective.keys[k].at(high)))
     };
-    (0..keys).map(of).collect()
+    ((0..keys).map(of).collect(), better)
 }
 
 /// The correlation of each value with the next.

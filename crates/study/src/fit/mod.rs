@@ -125,6 +125,8 @@ const EXTENSIONS: [(f64, f64); 4] = [(0.3, 4e-3), (0.55, 2e-3), (0.8, 1e-3), (1.
 const SIMPLEX: f64 = 5.0;
 /// Most rounds, each up to the horizon of the values fitted in the one before.
 const ROUNDS: usize = 4;
+/// How often better values beside the fitted ones take their place.
+const MOVES: usize = 6;
 /// A horizon that moves by less than this share cuts nothing off.
 const SAME_HORIZON: f64 = 0.02;
 
@@ -199,9 +201,10 @@ impl Fit {
                 }
             }
         }
+        let found = confidence_of_best(&objective, &mut best, settings.threads, &mut evaluations, report)?;
         let fitted = &best[0];
         let setting = objective.setting(&fitted.at);
-        let Some(found) = confidence::of(&objective, fitted, settings.threads, &mut evaluations) else {
+        let Some(found) = found else {
             if objective.cancel.load(std::sync::atomic::Ordering::Relaxed) {
                 return Err(FitError::Interrupted);
             }
@@ -243,6 +246,30 @@ impl Fit {
             comparison,
             before,
         })
+    }
+}
+
+/// The confidence of the best trial. Where values beside it turn out to be better, these are improved and take its place: a rough function
+/// has many minima, and only who looks around finds that there is a deeper one.
+fn confidence_of_best(
+    objective: &Objective<'_>,
+    best: &mut Vec<Trial>,
+    threads: usize,
+    evaluations: &mut Vec<Evaluation>,
+    report: &mut ReportFit<'_>,
+) -> Result<Option<confidence::Confidence>, FitError> {
+    let reach = EXTENSIONS[EXTENSIONS.len() - 1].1;
+    let mut moves = 0;
+    loop {
+        let found = confidence::of(objective, &best[0], threads, evaluations);
+        let better = found.as_ref().and_then(|found| found.better.as_ref()).filter(|_| moves < MOVES);
+        let start = better.and_then(|at| objective.trial(at, best[0].shift).ok());
+        let Some(start) = start else { return Ok(found) };
+        moves += 1;
+        let mut all = improve(objective, &[start], reach, true, threads, evaluations, report)?;
+        all.append(best);
+        all.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        *best = distinct(all, reach);
     }
 }
 
