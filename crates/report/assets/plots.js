@@ -9,13 +9,30 @@ const plots = (() => {
   let onSeek = () => {};
   let onZoom = () => {};
 
+  /** A legend of more entries than this has columns, and is folded if an earlier one has its entries. */
+  const many = 5;
+  const legends = [];
+
+  /** Where a legend of many entries belongs: into a fold in which the values are found where an earlier plot names the same curves. */
+  function folded(keys, title, row) {
+    const earlier = legends.find(({ labels }) => keys.every(({ label }) => labels.has(label)));
+    if (!earlier) {
+      legends.push({ title, labels: new Set(keys.map(({ label }) => label)) });
+      return row;
+    }
+    const fold = htmlElement("details", "again", undefined, row);
+    htmlElement("summary", "", `Curves as in “${earlier.title}”: values`, fold);
+    return fold;
+  }
+
   function head(panel, parent) {
     const row = htmlElement("div", "head", undefined, parent);
     const title = htmlElement("h3", "", `${panel.title} `, row);
     panel.offset = htmlElement("span", "offset", "", title);
     panel.unitText = htmlElement("span", "unit", panel.unit ? `(${panel.unit})` : "", title);
     const keys = panel.portrait && panel.series.length === 1 ? [] : panel.series.filter(({ raw }) => !raw);
-    const legend = htmlElement("div", keys.length > 5 && keys.every(({ upper }) => !upper) ? "legend many" : "legend", undefined, row);
+    const isMany = keys.length > many && keys.every(({ upper }) => !upper);
+    const legend = htmlElement("div", isMany ? "legend many" : "legend", undefined, isMany ? folded(keys, panel.title, row) : row);
     for (const series of keys) {
       const key = htmlElement("span", series.label ? "key" : "key bare", undefined, legend);
       const swatch = svgElement("svg", { viewBox: "0 0 18 8", "aria-hidden": "true" }, key);
