@@ -9,7 +9,7 @@ use teeter_report::document;
 const OWN_STYLE: &str = "\
 main > section { margin-top: 1.5rem; }\n\
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); gap: 1rem; }\n\
-.figures svg { display: block; width: 100%; height: auto; max-width: 44rem; margin: 0 auto; }\n\
+.figures svg { max-width: 44rem; }\n\
 li { margin: .3rem 0; overflow-wrap: anywhere; }\ntd:first-child { text-align: left; }\n";
 
 /// The page of the figures of a study, or of several side by side.
@@ -38,7 +38,7 @@ fn section(html: &mut String, figure: &StudyFigure) {
         "<section id=\"{}\" class=\"panel\"><h3>{}</h3>\n<div class=\"figures\">\n{}</div>",
         figure.name,
         escaped(&figure.title),
-        figure.themed()
+        figure.on_page()
     );
     let (header, rows) = &figure.summary;
     // Of a single study its name stands in the heading, and a column without an entry says nothing.
