@@ -241,8 +241,8 @@ pub fn page(fit: &Fit, title: &str, names: [&str; 3]) -> Result<String, AxisErro
         html_list(&sentences(fit)[fit.estimates.iter().filter(|found| found.value.is_finite()).count()..])
     );
     html.push_str("<section class=\"panel\"><h3>Motion</h3>\n<div class=\"pictures\">\n");
-    for (_, svg) in motion_figures(&fit.comparison, fit.before.as_ref(), None)? {
-        html.push_str(&svg);
+    for (_, figure) in motion_figures(&fit.comparison, fit.before.as_ref(), None)? {
+        let _ = writeln!(html, "<div>{figure}</div>");
     }
     html.push_str("</div>");
     html.push_str(horizon_note(&fit.comparison));

@@ -11,7 +11,6 @@ use teeter_report::document;
 pub(crate) const STYLE: &str = "\
 main > section { margin-top: 1.5rem; }\n\
 .pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); gap: 1rem; }\n\
-.pictures svg { display: block; width: 100%; height: auto; max-width: 46rem; margin: 0 auto; }\n\
 p.headline { margin: .25rem 0 0; font-size: 1.125rem; font-weight: 600; max-width: 62rem; }\n\
 section li { margin: .3rem 0; overflow-wrap: anywhere; }\ncode { font-size: .9em; }\n\
 td:first-child { text-align: left; }\n";
@@ -129,8 +128,8 @@ pub fn page(comparison: &Comparison, title: &str, names: [&str; 3]) -> Result<St
     let subtitle = format!("{run} · {measured} · block {block} · teeter {}", env!("CARGO_PKG_VERSION"));
     let mut html = format!("<p class=\"headline\">{}</p>\n", escaped(&headline(comparison)));
     html.push_str("<section class=\"panel\"><h3>Motion</h3>\n<div class=\"pictures\">\n");
-    for (_, svg) in motion_figures(comparison, None, None)? {
-        html.push_str(&svg);
+    for (_, figure) in motion_figures(comparison, None, None)? {
+        let _ = writeln!(html, "<div>{figure}</div>");
     }
     html.push_str("</div>");
     html.push_str(horizon_note(comparison));
