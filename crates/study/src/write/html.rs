@@ -3,15 +3,20 @@
 use std::fmt::Write;
 use teeter_plot::escaped;
 
-/// A table with a heading; cells are HTML.
+/// A table of more columns becomes a list for each row in a narrow window.
+const MOST_COLUMNS: usize = 6;
+
+/// A table with a heading, which fits a narrow window by smaller type and by cells of several lines; cells are HTML.
 pub(crate) fn html_table(heading: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let mut html = "<div class=\"scroll\" tabindex=\"0\"><table>\n<thead><tr>".to_owned();
+    let kind = if heading.len() > MOST_COLUMNS { "fit cards" } else { "fit" };
+    let mut html = format!("<div class=\"scroll {kind}\" tabindex=\"0\"><table>\n<thead><tr>");
     for cell in heading {
         let _ = write!(html, "<th scope=\"col\">{cell}</th>");
     }
     html.push_str("</tr></thead>\n<tbody>\n");
     for row in rows {
-        let cells: String = row.iter().map(|cell| format!("<td>{cell}</td>")).collect();
+        let cells = row.iter().zip(heading).map(|(cell, of)| format!("<td data-of=\"{of}\">{cell}</td>"));
+        let cells: String = cells.collect();
         let _ = writeln!(html, "<tr>{cells}</tr>");
     }
     html.push_str("</tbody></table></div>\n");
@@ -46,6 +51,13 @@ pub(crate) fn capitalised(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_cell_says_what_it_is_of() {
+        let table = html_table(&["a", "b"], [vec!["1".to_owned(), "2".to_owned()]]);
+        assert!(table.contains("class=\"scroll fit\"") && table.contains("<td data-of=\"b\">2</td>"), "{table}");
+        assert!(html_table(&["x"; 7], []).contains("class=\"scroll fit cards\""));
+    }
 
     #[test]
     fn sentences_of_the_terminal_are_set_for_a_page() {
