@@ -13,15 +13,15 @@ const plots = (() => {
   const many = 5;
   const legends = [];
 
-  /** Where a legend of many entries belongs: into a fold in which the values are found where an earlier plot names the same curves. */
-  function folded(keys, title, row) {
+  /** Where a legend of many entries belongs: into a fold with their values where an earlier plot names the same curves. */
+  function folded(keys, { title, portrait }, row) {
     const earlier = legends.find(({ labels }) => keys.every(({ label }) => labels.has(label)));
     if (!earlier) {
       legends.push({ title, labels: new Set(keys.map(({ label }) => label)) });
       return row;
     }
     const fold = htmlElement("details", "again", undefined, row);
-    htmlElement("summary", "", `Curves as in “${earlier.title}”: values`, fold);
+    htmlElement("summary", "", `Curves as in “${earlier.title}”: ${portrait ? "names" : "values"}`, fold);
     return fold;
   }
 
@@ -32,7 +32,7 @@ const plots = (() => {
     panel.unitText = htmlElement("span", "unit", panel.unit ? `(${panel.unit})` : "", title);
     const keys = panel.portrait && panel.series.length === 1 ? [] : panel.series.filter(({ raw }) => !raw);
     const isMany = keys.length > many && keys.every(({ upper }) => !upper);
-    const legend = htmlElement("div", isMany ? "legend many" : "legend", undefined, isMany ? folded(keys, panel.title, row) : row);
+    const legend = htmlElement("div", isMany ? "legend many" : "legend", undefined, isMany ? folded(keys, panel, row) : row);
     for (const series of keys) {
       const key = htmlElement("span", series.label ? "key" : "key bare", undefined, legend);
       const swatch = svgElement("svg", { viewBox: "0 0 18 8", "aria-hidden": "true" }, key);

@@ -8,7 +8,7 @@ use crate::with_digits;
 use teeter_plot::{Axis, Figure, Legend, Panel, Series};
 
 /// Width of the figures on the page where there is room, mm.
-const WIDE: f64 = 174.0;
+const WIDE: f64 = 140.0;
 
 /// A figure over the span as HTML.
 pub(super) fn on_page(figure: Figure) -> String {
