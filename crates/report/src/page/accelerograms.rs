@@ -140,9 +140,12 @@ const MEASURES: [(&str, &str, fn(&RecordSummary) -> f64); 6] = [
 pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary], named: bool) -> String {
     let mut html = String::new();
     let Some(histories) = histories(records) else { return html };
-    html.push_str(
-        "<section id=\"records\" class=\"panel\" aria-labelledby=\"records-title\">\n<h3 id=\"records-title\">Recorded \
-         accelerations</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"records-title\"><table>\n",
+    // The only section of a page, or one beside the plots.
+    let level = if named { "h3" } else { "h2" };
+    let _ = write!(
+        html,
+        "<section id=\"records\" class=\"panel\" aria-labelledby=\"records-title\">\n<{level} id=\"records-title\">Recorded \
+         accelerations</{level}>\n<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"records-title\"><table>\n",
     );
     // A column for each: of the few that a scene has, this is narrow enough for a telephone.
     if named {

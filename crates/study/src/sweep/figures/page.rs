@@ -1,5 +1,6 @@
 //! `study.html`: a self-contained page in the style of a run's report.
 
+use super::label::label;
 use super::{Ensemble, StudyFigure};
 use crate::write::{html_list, html_table};
 use std::fmt::Write;
@@ -26,6 +27,12 @@ pub fn study_page(title: &str, studies: &[Ensemble], figures: &[StudyFigure]) ->
     let subtitle = studies.iter().map(told).collect::<Vec<_>>().join(" · ");
     let subtitle = format!("{subtitle} · teeter {}", env!("CARGO_PKG_VERSION"));
     let mut html = String::new();
+    for study in studies {
+        let name = if studies.len() > 1 { format!("{}: ", study.name) } else { String::new() };
+        let varied: Vec<String> = study.sweep.keys().into_iter().map(|key| label(&study.sweep, key)).collect();
+        let text = format!("{name}{}, varied: {}", study.sweep.scene(), varied.join(", "));
+        let _ = writeln!(html, "<p class=\"note\">{}</p>", escaped(&text));
+    }
     for figure in figures {
         section(&mut html, figure);
     }
@@ -35,7 +42,7 @@ pub fn study_page(title: &str, studies: &[Ensemble], figures: &[StudyFigure]) ->
 fn section(html: &mut String, figure: &StudyFigure) {
     let _ = writeln!(
         html,
-        "<section id=\"{}\" class=\"panel\"><h3>{}</h3>\n<div class=\"figures\">\n{}</div>",
+        "<section id=\"{}\" class=\"panel\"><h2>{}</h2>\n<div class=\"figures\">\n{}</div>",
         figure.name,
         escaped(&figure.title),
         figure.on_page()
