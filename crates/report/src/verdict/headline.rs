@@ -174,7 +174,8 @@ fn all(verdict: &[BodyVerdict]) -> String {
         let what = if last == 0.0 {
             "stood still throughout".to_owned()
         } else {
-            format!("came to rest{how}, last at {}", time(last))
+            let when = if resting.len() == 1 { " at" } else { ", last at" };
+            format!("came to rest{how}{when} {}", time(last))
         };
         tell(&resting, &what, "");
     }
