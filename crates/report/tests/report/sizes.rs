@@ -85,10 +85,10 @@ fn blocks_that_stand_far_apart_are_plotted_from_their_starts() {
         let run = run("sliding", &sliding(places));
         let page = data(&run.html);
         let x = panel(&page, "x").unwrap();
-        assert_eq!((&x["title"], &x["unit"]), (&title.into(), &"m".into()), "{places:?}");
+        assert_eq!((&x["title"], &x["unit"]), (&title.into(), &"cm".into()), "{places:?}");
         for (k, start) in first.into_iter().enumerate() {
             let values = numbers(&x["series"][k]["y"]);
-            let [from, to] = [values[0], values[values.len() - 1]];
+            let [from, to] = [values[0], values[values.len() - 1]].map(|x| x / 100.0);
             assert!((from - start).abs() < 1e-4 && (to - start - 1.0).abs() < 1e-4, "{places:?} {k}: {from} {to}");
         }
         assert!(figure(&figures(&run.page), "x.svg").contains(title), "{places:?}");

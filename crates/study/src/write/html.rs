@@ -93,7 +93,7 @@ mod tests {
             let table = html_table(&vec!["x"; columns], [vec![cell.to_owned(); columns]]);
             if table.contains("class=\"scroll fit cards\"") { "list" } else { "table" }
         };
-        assert_eq!((kind(4, "0.12345678901"), kind(5, "0.12345678901")), ("table", "list"));
+        assert_eq!((kind(4, "0.123456789"), kind(5, "0.123456789")), ("table", "list"));
         // Lines are broken between words; tags take no room.
         assert_eq!((kind(5, "0.1234 to 0.2345"), kind(5, "<code class=\"key\">0.1234</code>")), ("table", "table"));
     }
