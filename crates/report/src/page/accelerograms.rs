@@ -125,8 +125,11 @@ fn thinned(dt: f64, values: &[f64]) -> Vec<(f64, f64)> {
     points
 }
 
-/// What the table says of a record: its measures with their units.
-const MEASURES: [(&str, &str, fn(&RecordSummary) -> f64); 6] = [
+/// A measure of a record: its name and unit.
+type Measure = (&'static str, &'static str, fn(&RecordSummary) -> f64);
+
+/// What the table says of a record.
+const MEASURES: [Measure; 6] = [
     ("Duration", "s", |of| of.duration),
     ("Peak acceleration (PGA)", "m/s²", |of| of.peak_acceleration),
     ("Peak velocity (PGV)", "m/s", |of| of.peak_velocity),
