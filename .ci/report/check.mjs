@@ -17,6 +17,8 @@ import { plotsDrawn, plotsOfRounding } from "./rounding.mjs";
 const [executablePath, ...folders] = process.argv.slice(2);
 /** Widths of the window, px, each in one of the two colour schemes. */
 const windows = [[1280, "light"], [390, "dark"]];
+/** What the pages of runs and studies are called. */
+const pages = ["report.html", "tradeoff.html", "study.html", "compare.html", "fit.html", "record.html"];
 /** Largest pages, bytes: of few bodies, and of any run. */
 const largest = { few: 1.2e6, any: 5e6 };
 const problems = [];
@@ -36,6 +38,10 @@ async function anyPage(page, problem) {
   (await keyboardWalk(page)).forEach(problem);
   (await plotsWithoutWords(page)).forEach(problem);
   (await page.evaluate(overlaps)).forEach((text) => problem(`texts overlap in ${text}`));
+  // Tables that fit a telephone, and those of records: numbers that one doesn't see without scrolling.
+  const cut = await page.$$eval(".fit, #records .scroll", (all) => all.filter((one) => one.scrollWidth > one.clientWidth)
+    .map((one) => one.querySelector("tr").textContent.trim()));
+  cut.forEach((text) => problem(`numbers of a table are out of view: ${text}`));
   const sideways = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
   if (sideways > 0) problem(`scrolls sideways by ${sideways} px`);
 }
@@ -95,7 +101,7 @@ const browser = await chromium.launch({
 });
 try {
   for (const folder of folders) {
-    const file = ["report.html", "tradeoff.html"].find((name) => existsSync(join(folder, name)));
+    const file = pages.find((name) => existsSync(join(folder, name)));
     if (!file) {
       problems.push(`${folder} has no page`);
       continue;

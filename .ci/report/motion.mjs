@@ -131,16 +131,23 @@ const looks = [0.13, 0.4, 0.7, 1];
 export async function unplotted(page, trajectory) {
   const shown = [];
   for (const part of looks) {
-    const [t, panels] = await page.evaluate((fraction) => {
+    const [t, panels] = await page.evaluate(([fraction, rows]) => {
       const slider = document.getElementById("time-slider");
-      slider.value = Math.round(fraction * slider.max);
-      slider.dispatchEvent(new Event("input"));
+      const readout = document.getElementById("time-readout");
+      // At a picture at which the table has a row, if one is near: what rings can't be had from its neighbours.
+      const known = new Set(rows);
+      const frame = Math.round(fraction * slider.max);
+      for (let back = 0; back <= Math.min(50, frame); back++) {
+        slider.value = frame - back;
+        slider.dispatchEvent(new Event("input"));
+        if (known.has(Number(readout.dataset.t).toPrecision(9))) break;
+      }
       return [Number(document.getElementById("time-readout").dataset.t), [...document.querySelectorAll("#plots .panel")].map((panel) => ({
         title: panel.querySelector("h2, h3")?.textContent ?? "",
         unit: panel.dataset.unit ?? "",
         values: [...panel.querySelectorAll(".key b")].map((value) => Number(value.textContent.replace(/−/g, "-"))),
       }))];
-    }, part);
+    }, [part, trajectory.map((row) => row.t.toPrecision(9))]);
     shown.push({ t, panels });
   }
   const missing = [];

@@ -5,7 +5,7 @@ use crate::measured::{MeasuredOptions, bytes};
 use crate::run::Exit;
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use teeter_report::{Reserved, Results};
+use teeter_report::{Reserved, Results, shortest};
 use teeter_study::compare::{
     CompareSettings, Comparison, FILES, MotionTrace, half_cycle_csv, impact_csv, json, page, rows_csv, sentences_of,
     svg_figures,
@@ -150,10 +150,10 @@ fn write_all(
         let share =
             if d.scale > 0.0 { format!(" ({:.1} % of the largest)", 100.0 * d.rms / d.scale) } else { String::new() };
         text += &format!(
-            "{}: root mean square difference {:.3} {unit}{share}, at most {:.3} {unit} at t = {:.4} s\n",
+            "{}: root mean square difference {} {unit}{share}, at most {} {unit} at t = {:.4} s\n",
             found.channel.title(),
-            factor * d.rms,
-            factor * d.max,
+            shortest(factor * d.rms, 2),
+            shortest(factor * d.max, 2),
             d.max_at
         );
     }

@@ -462,6 +462,8 @@ fn a_study_has_its_figures_and_shards_lead_to_the_same() {
             && page.contains("id=\"distribution\"")
             && !page.contains("http-equiv=\"refresh")
     );
+    // Columns are named as one would say them.
+    assert!(page.contains("Peak acceleration of ground x (m/s²)") && !page.contains(">ground.motion.x.peak"), "{page}");
     let shares = table(&folder.join("all/distribution.csv"));
     assert_eq!(shares.last().unwrap()[3], "1.0");
     for shard in ["1", "2"] {
@@ -486,10 +488,12 @@ fn studies_are_compared_and_a_study_does_not_differ_from_itself() {
     let told = teeter(&folder, &["sweep", "--compare", "one", "one", "--out", "same"]);
     let said = String::from_utf8(told.stdout).unwrap();
     assert!(
-        said.contains("the median of one is 1 times that of one, 95 % from 1 to 1 (the same records drawn for both)"),
+        said.contains(
+            "the median of `one` is 1 times that of `one`, 95 % from 1 to 1 (the same records drawn for both)"
+        ),
         "{said}"
     );
-    assert!(said.contains("the largest distance is 0, Kolmogorov–Smirnov p = 1"), "{said}");
+    assert!(said.contains("(largest distance 0, Kolmogorov–Smirnov p = 1)"), "{said}");
     done(&folder, &["sweep", "--compare", "one", "squat", "--out", "both"]);
     let rows = table(&folder.join("both/fragility.csv"));
     let median = |row: &[String]| row[2].parse::<f64>().unwrap();

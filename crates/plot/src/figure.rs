@@ -103,6 +103,13 @@ impl Figure {
         Self { id, title: title.into(), x, panels: Vec::new(), legend, theme, headed: false, width: WIDTH }
     }
 
+    /// Adds to the id, for the same figure once more in a document.
+    #[must_use]
+    pub fn extend_id(mut self, suffix: &str) -> Self {
+        self.id = format!("{}-{suffix}", self.id);
+        self
+    }
+
     /// Adds a panel below the others.
     #[must_use]
     pub fn panel(mut self, panel: Panel) -> Self {

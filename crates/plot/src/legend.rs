@@ -183,8 +183,11 @@ impl Legend {
     }
 }
 
-/// The pattern of a line that lies on another one, which shows in its gaps.
-const OVER: &str = "4 4";
+/// The pattern of a line that lies on others, which show in its gaps: all have the same period, each half the dashes of the one below.
+fn over(lines: u8) -> String {
+    let dash = 8.0 / f64::from(1_u32 << lines.min(3));
+    format!("{dash} {}", 8.0 - dash)
+}
 
 /// Dash patterns that distinguish lines of the same colour.
 const DASHES: [&str; 3] = ["none", "5 2.5", "1.5 2"];
@@ -192,7 +195,10 @@ const DASHES: [&str; 3] = ["none", "5 2.5", "1.5 2"];
 /// Colour and dash of a line.
 pub(crate) fn stroke(number: usize, dash: Dash, theme: Theme) -> String {
     let by_number = DASHES[number / crate::theme::SERIES_COLOURS % DASHES.len()];
-    let dash = if dash == Dash::Over { OVER } else { by_number };
+    let dash = match dash {
+        Dash::ByNumber => by_number.to_owned(),
+        Dash::Over(lines) => over(lines),
+    };
     let colour = Colour::Series(number);
     format!("stroke=\"{}\" stroke-dasharray=\"{dash}\"", colour.value(theme))
 }

@@ -20,8 +20,8 @@ pub struct Series {
 pub(crate) enum Dash {
     /// Its number.
     ByNumber,
-    /// It lies on another line.
-    Over,
+    /// It lies on another line, or on so many that lie on each other.
+    Over(u8),
 }
 
 /// How a series is drawn.
@@ -140,12 +140,18 @@ impl Series {
             && self.points.iter().zip(&other.points).all(|(a, b)| a.0 == b.0 && (a.1 - b.1).abs() <= tolerance)
     }
 
-    /// Dashes each line that lies within `tolerance` of an earlier one: that one shows in the gaps.
+    /// Dashes each line that lies within `tolerance` of an earlier one: that one shows in the gaps. Of several on each other each later
+    /// one has shorter dashes.
     pub(crate) fn tell_apart(lines: &mut [Self], tolerance: f64) {
         for k in 1..lines.len() {
             let (before, rest) = lines.split_at_mut(k);
-            if before.iter().any(|earlier| rest[0].lies_on(earlier, tolerance)) {
-                rest[0].dash = Dash::Over;
+            let below =
+                before.iter().filter(|earlier| rest[0].lies_on(earlier, tolerance)).map(|earlier| match earlier.dash {
+                    Dash::ByNumber => 0,
+                    Dash::Over(lines) => lines,
+                });
+            if let Some(lines) = below.max() {
+                rest[0].dash = Dash::Over(lines.saturating_add(1));
             }
         }
     }
@@ -177,7 +183,9 @@ mod tests {
         let line = |shift: f64| Series::line("", (0..9).map(|k| (f64::from(k), f64::from(k * k) + shift)));
         let mut lines = [line(0.0), line(0.2), line(0.4), line(9.0)];
         Series::tell_apart(&mut lines, 0.3);
-        assert_eq!(lines.each_ref().map(|line| line.dash == Dash::Over), [false, true, true, false]);
+        // The third lies on the second alone, which has dashes already.
+        let dashes = [Dash::ByNumber, Dash::Over(1), Dash::Over(2), Dash::ByNumber];
+        assert_eq!(lines.each_ref().map(|line| line.dash), dashes);
     }
 
     #[test]

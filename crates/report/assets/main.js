@@ -93,7 +93,7 @@
     }
     plots.add({
       id: `state-${k}`, contact: k, title: `Contact state${suffix}`, series: [],
-      bands: points.map((point) => ({ short: several ? contact.points[point.point].short : contact.points[point.point].label.replace("bottom ", ""), state: point.state })),
+      bands: points.map((point) => ({ short: several ? contact.points[point.point].short : contact.points[point.point].label.replace("bottom ", ""), name: several ? contact.points[point.point].label : undefined, state: point.state })),
       height: plots.margin.top + plots.margin.bottom + plots.rowHeight * points.length,
     });
   });

@@ -9,13 +9,30 @@ const plots = (() => {
   let onSeek = () => {};
   let onZoom = () => {};
 
+  /** A legend of more entries than this has columns, and is folded if an earlier one has its entries. */
+  const many = 5;
+  const legends = [];
+
+  /** Where a legend of many entries belongs: into a fold with their values where an earlier plot names the same curves. */
+  function folded(keys, { title, portrait }, row) {
+    const earlier = legends.find(({ labels }) => keys.every(({ label }) => labels.has(label)));
+    if (!earlier) {
+      legends.push({ title, labels: new Set(keys.map(({ label }) => label)) });
+      return row;
+    }
+    const fold = htmlElement("details", "again", undefined, row);
+    htmlElement("summary", "", `Curves as in “${earlier.title}”: ${portrait ? "names" : "values"}`, fold);
+    return fold;
+  }
+
   function head(panel, parent) {
     const row = htmlElement("div", "head", undefined, parent);
     const title = htmlElement("h3", "", `${panel.title} `, row);
     panel.offset = htmlElement("span", "offset", "", title);
     panel.unitText = htmlElement("span", "unit", panel.unit ? `(${panel.unit})` : "", title);
     const keys = panel.portrait && panel.series.length === 1 ? [] : panel.series.filter(({ raw }) => !raw);
-    const legend = htmlElement("div", keys.length > 5 && keys.every(({ upper }) => !upper) ? "legend many" : "legend", undefined, row);
+    const isMany = keys.length > many && keys.every(({ upper }) => !upper);
+    const legend = htmlElement("div", isMany ? "legend many" : "legend", undefined, isMany ? folded(keys, panel, row) : row);
     for (const series of keys) {
       const key = htmlElement("span", series.label ? "key" : "key bare", undefined, legend);
       const swatch = svgElement("svg", { viewBox: "0 0 18 8", "aria-hidden": "true" }, key);
@@ -34,6 +51,10 @@ const plots = (() => {
       const key = htmlElement("span", "key", undefined, legend);
       htmlElement("i", className, undefined, key);
       key.append(word);
+    }
+    // What the letters beside the bands stand for.
+    for (const { short, name } of panel.bands?.filter((band) => band.name && band.name !== band.short) ?? []) {
+      htmlElement("span", "key", `${short}: ${name}`, legend);
     }
     if (panel.cut) {
       const toggle = htmlElement("button", "link", "", row);
@@ -57,19 +78,21 @@ const plots = (() => {
     panel.unitText.textContent = unit ? `(${unit})` : "";
   }
 
-  const stroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${series.over ? "5 5" : dash(series.index)}; fill: none`;
+  /** The dashes of a line on others, as in the figures: all have the same period, each half the dashes of the one below. */
+  const over = (lines) => `${10 / 2 ** Math.min(lines, 3)} ${10 - 10 / 2 ** Math.min(lines, 3)}`;
+  const stroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${series.over ? over(series.over) : dash(series.index)}; fill: none`;
 
   /** The largest value of a panel, by which its readouts have their decimals. */
   const largestOf = ({ series, cut }) => Math.min(cut?.limit ?? Infinity, series.reduce((most, { y, upper }) => [y, upper ?? []].reduce((largest, values) =>
     values.reduce((size, x) => Math.max(size, Math.abs(x ?? 0) || 0), largest), most), 0));
 
-  /** Dashes a line that lies on an earlier one, which then shows in the gaps: within 1 % of what the panel shows. */
+  /** Dashes a line that lies on earlier ones, which then show in the gaps: within 1 % of what the panel shows. */
   function tellApart({ series }) {
     const finite = series.flatMap(({ y }) => y.filter((x) => x !== null && Number.isFinite(x)));
     const [low, high] = finite.reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
     const near = (a, b) => a.t === b.t && !a.upper && !b.upper && a.raw === b.raw && a.y.length === b.y.length
       && a.y.every((x, i) => Math.abs(x - b.y[i]) <= 0.01 * (high - low));
-    series.forEach((line, k) => { line.over = series.slice(0, k).some((earlier) => near(line, earlier)); });
+    series.forEach((line, k) => { line.over = series.slice(0, k).reduce((most, earlier) => (near(line, earlier) ? Math.max(most, earlier.over + 1) : most), 0); });
   }
 
   function add(panel) {

@@ -1,10 +1,11 @@
 //! The records that prescribe motions: their figures, and their section of the page.
 
 use super::rounded;
+use super::widths::for_any_width;
 use crate::summary::RecordSummary;
 use std::fmt::Write;
 use std::sync::Arc;
-use teeter_plot::{Axis, Figure, Panel, Series, Theme, escaped};
+use teeter_plot::{Axis, Figure, Legend, Panel, Series, escaped};
 use teeter_scenario::scene::RecordScene;
 
 /// Damping ratio of the response spectra.
@@ -88,7 +89,8 @@ pub(super) fn spectra(records: &[Arc<RecordScene>]) -> Option<Figure> {
         let axis = Axis::around(label, heights.chain([0.0]).collect::<Vec<_>>(), 1e-9);
         Panel::new(axis).with(lines).note(format!("damping ratio {} %", 100.0 * DAMPING_RATIO))
     };
-    let x = Axis::logarithmic("Natural period T (s)", [low, high]).ok()?;
+    // From end to end: the range is chosen, not found in values.
+    let x = Axis::logarithmic_between("Natural period T (s)", low, high);
     let title = "Response spectra of the records, damping ratio 5 %: pseudo-acceleration and relative displacement";
     let figure = Figure::new("spectra", title, x)
         .panel(panel("Pseudo-acceleration S_a (m/s²)", &teeter_record::Response::pseudo_acceleration))
@@ -123,49 +125,62 @@ fn thinned(dt: f64, values: &[f64]) -> Vec<(f64, f64)> {
     points
 }
 
-/// The section of the page with a table of peaks and both figures; empty without records. `named`: each with the motion that it
+/// A measure of a record: its name and unit.
+type Measure = (&'static str, &'static str, fn(&RecordSummary) -> f64);
+
+/// What the table says of a record.
+const MEASURES: [Measure; 6] = [
+    ("Duration", "s", |of| of.duration),
+    ("Peak acceleration (PGA)", "m/s²", |of| of.peak_acceleration),
+    ("Peak velocity (PGV)", "m/s", |of| of.peak_velocity),
+    ("Peak displacement (PGD)", "m", |of| of.peak_displacement),
+    ("Arias intensity", "m/s", |of| of.arias_intensity),
+    ("Significant duration, 5–95 %", "s", |of| of.significant_duration),
+];
+
+/// The section of the page with a table of measures and both figures; empty without records. `named`: each with the motion that it
 /// drives and its file, which a page of one record has in its title.
 pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary], named: bool) -> String {
     let mut html = String::new();
     let Some(histories) = histories(records) else { return html };
-    html.push_str(
-        "<section id=\"records\" class=\"panel\" aria-labelledby=\"records-title\">\n<h3 id=\"records-title\">Recorded \
-         accelerations</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"records-title\"><table>\n\
-         <thead><tr>",
+    // The only section of a page, or one beside the plots.
+    let level = if named { "h3" } else { "h2" };
+    let _ = write!(
+        html,
+        "<section id=\"records\" class=\"panel\" aria-labelledby=\"records-title\">\n<{level} id=\"records-title\">Recorded \
+         accelerations</{level}>\n<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"records-title\"><table>\n",
     );
-    html.push_str(if named { "<th scope=\"col\">Motion</th><th scope=\"col\">Record</th>" } else { "" });
-    html.push_str(
-        "<th scope=\"col\">Duration<br><small>s</small></th>\
-         <th scope=\"col\">PGA<br><small>m/s²</small></th><th scope=\"col\">PGV<br><small>m/s</small></th>\
-         <th scope=\"col\">PGD<br><small>m</small></th><th scope=\"col\">Arias intensity<br><small>m/s</small></th>\
-         <th scope=\"col\">Significant duration, 5–95 %<br><small>s</small></th></tr></thead>\n<tbody>\n",
-    );
-    for of in summaries {
-        let text = if of.description.is_empty() { of.file.clone() } else { format!("{}: {}", of.file, of.description) };
-        let motion = escaped(&of.motion);
-        let _ = write!(html, "<tr data-record=\"{motion}\">");
-        if named {
-            let _ = write!(html, "<td>{motion}</td><td>{}</td>", escaped(&text));
+    // A column for each: of the few that a scene has, this is narrow enough for a telephone.
+    if named {
+        html.push_str("<thead><tr><th scope=\"col\">Record</th>");
+        for of in summaries {
+            let (motion, file) = (escaped(&of.motion), escaped(&of.file));
+            let _ = write!(html, "<th scope=\"col\" data-record=\"{motion}\">{motion}<br><small>{file}</small></th>");
         }
-        for number in [
-            of.duration,
-            of.peak_acceleration,
-            of.peak_velocity,
-            of.peak_displacement,
-            of.arias_intensity,
-            of.significant_duration,
-        ] {
-            let _ = write!(html, "<td>{}</td>", rounded(number, 4));
+        html.push_str("</tr></thead>\n");
+    }
+    html.push_str("<tbody>\n");
+    for (what, unit, value) in MEASURES {
+        let _ = write!(html, "<tr><th scope=\"row\">{what} <span class=\"unit\">({unit})</span></th>");
+        for of in summaries {
+            let _ = write!(html, "<td>{}</td>", rounded(value(of), 4));
         }
         html.push_str("</tr>\n");
     }
-    html.push_str("</tbody></table></div>\n<div class=\"pictures\">\n");
+    html.push_str("</tbody></table></div>\n");
+    for of in summaries.iter().filter(|of| named && !of.description.is_empty()) {
+        let _ = writeln!(html, "<p class=\"note\">{}: {}</p>", escaped(&of.file), escaped(&of.description));
+    }
+    html.push_str("<div class=\"pictures\">\n");
     for figure in [Some(histories), spectra(records)].into_iter().flatten() {
-        let _ = writeln!(html, "<div class=\"themed\">{}</div>", figure.theme(Theme::Page).to_svg());
+        let _ = writeln!(html, "<div>{}</div>", for_any_width(&figure.legend(Legend::Rows), WIDE));
     }
     html.push_str("</div></section>\n");
     html
 }
+
+/// Width of the figures on the page where there is room, mm.
+const WIDE: f64 = 120.0;
 
 #[cfg(test)]
 mod tests {

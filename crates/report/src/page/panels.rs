@@ -49,16 +49,36 @@ pub(crate) struct Line {
     /// Number of its colour.
     pub(crate) number: usize,
     pub(crate) y: Vec<f64>,
-    /// The column of the curves whose it is, with what that is multiplied by; none where its times are the borders of
-    /// buckets, not those of the curves.
-    pub(crate) of: Option<(usize, f64)>,
+    /// Where in the curves it is from; none where its times are the borders of buckets, not those of the curves.
+    pub(crate) of: Option<Source>,
+}
+
+/// A column of the curves as it is drawn.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Source {
+    pub(crate) column: usize,
+    /// What is subtracted from its values: 0, or the value at the start.
+    pub(crate) zero: f64,
+    /// What these are multiplied by.
+    pub(crate) factor: f64,
+}
+
+impl Source {
+    /// A value as it is drawn.
+    pub(crate) fn drawn(self, value: f64) -> f64 {
+        self.factor * (value - self.zero)
+    }
 }
 
 impl Line {
     /// A column of the curves, multiplied by `factor`.
     fn of(curves: &Curves, column: usize, factor: f64, label: String, number: usize) -> Self {
-        let y = curves.curve(column).into_iter().map(|x| factor * x).collect();
-        Self { label, number, y, of: Some((column, factor)) }
+        Self::from_zero(curves, Source { column, zero: 0.0, factor }, label, number)
+    }
+
+    fn from_zero(curves: &Curves, source: Source, label: String, number: usize) -> Self {
+        let y = curves.curve(source.column).into_iter().map(|x| source.drawn(x)).collect();
+        Self { label, number, y, of: Some(source) }
     }
 }
 

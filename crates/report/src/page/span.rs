@@ -3,18 +3,16 @@
 use super::content::{holds, largest};
 use super::panels::{length_unit, prefix};
 use super::recorder::{BLOCK_FRAME, PageRecorder};
+use super::widths::for_any_width;
 use crate::with_digits;
-use teeter_plot::{Axis, Figure, Legend, Panel, Series, Theme};
+use teeter_plot::{Axis, Figure, Legend, Panel, Series};
 
-/// Widths of the figures on the page, mm: where there is room, and on a telephone.
-const WIDE: f64 = 174.0;
-const NARROW: f64 = 88.0;
+/// Width of the figures on the page where there is room, mm.
+const WIDE: f64 = 140.0;
 
-/// A figure for the page in its colours, for wide and for narrow windows; `make` is told its id.
-pub(super) fn on_page(id: &str, make: impl Fn(&str) -> Option<Figure>) -> Option<String> {
-    let svg = |id: &str, width: f64| Some(make(id)?.theme(Theme::Page).legend(Legend::Rows).width_mm(width).to_svg());
-    let (wide, narrow) = (svg(id, WIDE)?, svg(&format!("{id}-narrow"), NARROW)?);
-    Some(format!("<div class=\"themed wide\">{wide}</div>\n<div class=\"themed narrow\">{narrow}</div>\n"))
+/// A figure over the span as HTML.
+pub(super) fn on_page(figure: Figure) -> String {
+    for_any_width(&figure.legend(Legend::Rows), WIDE)
 }
 
 /// Moment and transverse force over the span: their least and largest in the run, on either side of each node.

@@ -157,6 +157,11 @@ fn all(verdict: &[BodyVerdict]) -> String {
         let blocks = if parts.is_empty() { " blocks" } else { "" };
         let way = earliest.way.map_or_else(String::new, |way| format!(" to the {}", way.word()));
         let when = earliest.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
+        // One that is different from the rest is named.
+        if let ([one], "", false) = (found, first, parts.is_empty()) {
+            parts.push(format!("`{}` {what}", one.body));
+            return;
+        }
         let which = if first.is_empty() { String::new() } else { format!(", {first} `{}`{way}{when}", earliest.body) };
         parts.push(format!("{count}{of_all}{blocks} {what}{which}"));
     };
@@ -177,7 +182,8 @@ fn all(verdict: &[BodyVerdict]) -> String {
         let what = if last == 0.0 {
             "stood still throughout".to_owned()
         } else {
-            format!("came to rest{how}, last at {}", time(last))
+            let when = if resting.len() == 1 { " at" } else { ", last at" };
+            format!("came to rest{how}{when} {}", time(last))
         };
         tell(&resting, &what, "");
     }

@@ -63,6 +63,8 @@ fn a_record_is_measured_and_drawn() {
     }
     assert!(run.html.contains("id=\"records\"") && run.html.contains("data-record=\"ground.motion.x\""));
     assert!(run.html.contains("Pseudo-acceleration S<tspan"));
+    // Measures stand below each other, so that a telephone shows them all.
+    assert!(run.html.contains("(PGA) <span class=\"unit\">(m/s²)</span></th><td>2</td></tr>"), "{}", run.html);
 }
 
 #[test]

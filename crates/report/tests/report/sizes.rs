@@ -64,6 +64,37 @@ fn a_creeping_block_far_from_the_origin_is_seen_to_creep() {
     assert!(svg.contains(">30</text>"), "micrometres");
 }
 
+/// Two blocks of 20 cm that slide at 1 m/s for 1 s, at these places.
+fn sliding(places: [&str; 2]) -> String {
+    let block = |name: &str, at: &str| {
+        format!(
+            "[block.{name}]\nmaterial = 'm'\nwidth = '20 cm'\nheight = '10 cm'\ndepth = '5 cm'\nposition = ['{at}', '5 cm']\n\
+             velocity = ['1 m/s', '0 m/s']\n"
+        )
+    };
+    let start =
+        "[time]\nend = '1 s'\nstep = '1 ms'\n[world]\ngravity = '0 m/s^2'\n[material.m]\ndensity = '2500 kg/m^3'\n";
+    format!("{start}{}{}", block("near", places[0]), block("far", places[1]))
+}
+
+#[test]
+fn blocks_that_stand_far_apart_are_plotted_from_their_starts() {
+    for (places, title, first) in
+        [(["0 m", "10 m"], "Displacement x \u{2212} x₀", [0.0, 0.0]), (["0 m", "50 cm"], "Position x", [0.0, 0.5])]
+    {
+        let run = run("sliding", &sliding(places));
+        let page = data(&run.html);
+        let x = panel(&page, "x").unwrap();
+        assert_eq!((&x["title"], &x["unit"]), (&title.into(), &"cm".into()), "{places:?}");
+        for (k, start) in first.into_iter().enumerate() {
+            let values = numbers(&x["series"][k]["y"]);
+            let [from, to] = [values[0], values[values.len() - 1]].map(|x| x / 100.0);
+            assert!((from - start).abs() < 1e-4 && (to - start - 1.0).abs() < 1e-4, "{places:?} {k}: {from} {to}");
+        }
+        assert!(figure(&figures(&run.page), "x.svg").contains(title), "{places:?}");
+    }
+}
+
 #[test]
 fn rounding_is_no_loss_of_energy() {
     let text =

@@ -236,17 +236,17 @@ pub fn page(fit: &Fit, title: &str, names: [&str; 3]) -> Result<String, AxisErro
     });
     let _ = write!(
         html,
-        "<section class=\"panel\"><h3>Fitted values</h3>\n{}{}</section>\n",
+        "<section class=\"panel\"><h2>Fitted values</h2>\n{}{}</section>\n",
         html_table(&["Fitted", "Value", "Standard error", "95 % interval"], rows),
         html_list(&sentences(fit)[fit.estimates.iter().filter(|found| found.value.is_finite()).count()..])
     );
-    html.push_str("<section class=\"panel\"><h3>Motion</h3>\n<div class=\"pictures\">\n");
-    for (_, svg) in motion_figures(&fit.comparison, fit.before.as_ref(), None)? {
-        html.push_str(&svg);
+    html.push_str("<section class=\"panel\"><h2>Motion</h2>\n<div class=\"pictures\">\n");
+    for (_, figure) in motion_figures(&fit.comparison, fit.before.as_ref(), None)? {
+        let _ = writeln!(html, "<div>{figure}</div>");
     }
     html.push_str("</div>");
     html.push_str(horizon_note(&fit.comparison));
-    html.push_str("</section>\n<section class=\"panel\"><h3>Correlation of the estimates</h3>\n");
+    html.push_str("</section>\n<section class=\"panel\"><h2>Correlation of the estimates</h2>\n");
     let heads: Vec<String> = (0..fit.estimates.len()).map(|number| name_of(fit, number)).collect();
     let heading: Vec<&str> = std::iter::once("").chain(heads.iter().map(String::as_str)).collect();
     let rows = fit.correlation.iter().zip(&heads).map(|(row, name)| {
@@ -255,7 +255,7 @@ pub fn page(fit: &Fit, title: &str, names: [&str; 3]) -> Result<String, AxisErro
     let _ = write!(
         html,
         "{}<p class=\"note\">Near 1 or −1: the motion determines a combination of the two, not each by itself.</p></section>\n\
-         <section class=\"panel\"><h3>How they are compared</h3>\n{}</section>\n",
+         <section class=\"panel\"><h2>How they are compared</h2>\n{}</section>\n",
         html_table(&heading, rows),
         html_list(&sentences_of(&fit.comparison))
     );

@@ -36,9 +36,7 @@ pub enum NoFit {
     #[error("{0}")]
     OneSided(&'static str),
     /// The event came at all intensities above and at none below: β would be 0.
-    #[error(
-        "the event comes at no intensity below {below:.4e} and at all above {above:.4e}: the median is between them, and the dispersion can't be told"
-    )]
+    #[error("{}, and the dispersion can't be told", separated(*below, *above))]
     Separated {
         /// The largest intensity without it.
         below: f64,
@@ -51,6 +49,16 @@ pub enum NoFit {
     /// An intensity that has no logarithm.
     #[error("the intensity {0} is not positive and finite")]
     Intensity(f64),
+}
+
+/// Where the event begins, if it comes in no case below and in all above.
+fn separated(below: f64, above: f64) -> String {
+    let [least, most] = [below, above].map(|x| format!("{x:.3e}").parse().unwrap_or(x));
+    if below == above {
+        format!("the event comes in no case below {least} and in all above, so the median is there")
+    } else {
+        format!("the event comes in no case up to {least} and in all from {most} on, so the median is between these")
+    }
 }
 
 /// Iterations of Newton's method, of which it takes about eight.

@@ -56,8 +56,16 @@ impl Criterion {
     /// Its meaning after "where" and "that", for titles.
     pub(crate) fn clause(&self) -> String {
         match self {
-            Self::Overturned => "a block overturned".to_owned(),
+            Self::Overturned => "a block overturns".to_owned(),
             Self::Above { output, value } => format!("{output} is above {value}"),
+        }
+    }
+
+    /// In how many cases it holds, as a sentence.
+    pub(crate) fn counted(&self, events: usize, cases: usize) -> String {
+        match self {
+            Self::Overturned => format!("A block overturns in {events} of {cases} cases."),
+            Self::Above { output, value } => format!("{output} is above {value} in {events} of {cases} cases."),
         }
     }
 

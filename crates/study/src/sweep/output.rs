@@ -74,6 +74,26 @@ impl Output {
         }
     }
 
+    /// The natural period of its spectral acceleration, s, if it is one.
+    pub(crate) fn period(&self) -> Option<f64> {
+        match &self.origin {
+            Origin::Spectral { period, .. } => Some(*period),
+            Origin::Summary(_) | Origin::Column { .. } => None,
+        }
+    }
+
+    /// What it takes of a column of `trajectory.csv`, in words: of this symbol of this body.
+    pub(crate) fn reduced(&self, symbol: &str, body: &str) -> Option<String> {
+        let Origin::Column { reduction, .. } = &self.origin else { return None };
+        Some(match reduction {
+            Reduction::Max => format!("Largest {symbol} of {body}"),
+            Reduction::Min => format!("Least {symbol} of {body}"),
+            Reduction::MaxAbs => format!("Largest |{symbol}| of {body}"),
+            Reduction::Final => format!("Final {symbol} of {body}"),
+            Reduction::At(t) => format!("{symbol} of {body} at t = {t} s"),
+        })
+    }
+
     /// A value of the summary under its own path.
     pub(crate) fn summary(path: &str) -> Self {
         Self { name: path.to_owned(), origin: Origin::Summary(path.to_owned()) }

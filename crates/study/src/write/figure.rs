@@ -2,7 +2,8 @@
 
 use super::{percent, short};
 use crate::{Advice, Quantity, TARGETS, Tradeoff, pareto_front};
-use teeter_plot::{Axis, AxisError, Figure, Legend, Mark, Panel, Series, Theme};
+use teeter_plot::{Axis, AxisError, Figure, Legend, Mark, Panel, Series};
+use teeter_report::for_any_width;
 
 /// Errors below this are rounding: drawn at the bottom.
 const LEAST: f64 = 1e-15;
@@ -10,8 +11,11 @@ const LEAST: f64 = 1e-15;
 /// Times below the resolution of clocks, drawn at the left, s.
 const SHORTEST: f64 = 1e-9;
 
-/// Height of the plot, mm.
-const HEIGHT: f64 = 57.0;
+/// Height of the plot in files and on the page, mm.
+const HEIGHTS: [f64; 2] = [57.0, 84.0];
+
+/// Width of the figures on the page where there is room, mm.
+const ON_PAGE: f64 = 174.0;
 
 /// Index of the colour black, for series that belong to no scheme.
 const BLACK: usize = 6;
@@ -37,15 +41,14 @@ pub fn figures(study: &Tradeoff, width: f64) -> Result<Vec<(String, String)>, Ax
     Ok(named.map(|(quantity, svg)| (format!("{}.svg", quantity.word()), svg)).collect())
 }
 
-/// The figures for files of a width, mm, or without one for pages; a page has a legend of its own, which is as
-/// large as its text at any width.
+/// The figures for files of a width, mm, or without one as HTML for pages, which have a legend of their own.
 pub(super) fn themed(study: &Tradeoff, width: Option<f64>) -> Result<Vec<(Quantity, String)>, AxisError> {
     let shown = Quantity::ALL.into_iter().map(|quantity| (quantity, points(study, quantity)));
     let figure = |(quantity, points): (Quantity, Vec<Point>)| {
         let figure = figure(study, quantity, &points, width.is_some())?;
         let svg = match width {
             Some(width) => figure.width_mm(width).to_svg(),
-            None => figure.theme(Theme::Page).to_svg(),
+            None => for_any_width(&figure, ON_PAGE),
         };
         Ok((quantity, svg))
     };
@@ -114,7 +117,8 @@ fn figure(study: &Tradeoff, quantity: Quantity, points: &[Point], has_legend: bo
         series.push(Series::marks("", of(false), mark).number(number).hollow());
     }
     series.push(Series::marks(named("hollow: other keys changed too"), [], Mark::Circle).number(BLACK).hollow());
-    let mut panel = Panel::new(y).with(series).labels(advised(study, points)).height_mm(HEIGHT);
+    let mut panel =
+        Panel::new(y).with(series).labels(advised(study, points)).height_mm(HEIGHTS[usize::from(!has_legend)]);
     if let Some(bar) = bar {
         panel = panel.shaded_below(bar, named(&format!("the reference is known to {}", short(bar))));
     }

@@ -14,19 +14,15 @@ const SHAPES: [&str; 4] = [
     "<path d=\"M6 1l5 5l-5 5l-5 -5z\"/>",
 ];
 
-/// The style of the figure. Its text is set in the units of the figure, and so that it is about as
-/// large as the page's at any width.
+/// The style of the figure.
 pub(super) const STYLE: &str = "\
-#front svg[role] { display: block; width: 100%; height: auto; max-width: 62rem; margin: 0 auto; font-size: 7px; }\n\
-#front tspan { font-size: .8em; }\n\
+#front svg[role] { max-width: 62rem; margin: 0 auto; }\n\
 #front .legend { margin: .5rem 0; padding: 0; list-style: none; }\n\
 #front .legend svg { width: 12px; height: 12px; }\n\
 #choice { flex-wrap: wrap; gap: .3rem 1.1rem; margin: .5rem 0; padding: 0; border: 0; }\n\
 #choice legend { float: left; padding: 0; margin-right: .2rem; }\n\
 #choice label { white-space: nowrap; }\n\
-#front figcaption { display: block; color: var(--muted); font-size: .8125rem; max-width: 62rem; margin: .4rem auto; }\n\
-@media (max-width: 900px) { #front svg[role] { font-size: 9px; } }\n\
-@media (max-width: 520px) { #front svg[role] { font-size: 13px; } }\n";
+#front figcaption { display: block; color: var(--muted); font-size: .8125rem; max-width: 62rem; margin: .4rem auto; }\n";
 
 /// Writes the section with the figures of all quantities that the scene has, one of them shown.
 pub(super) fn section(html: &mut String, study: &Tradeoff) -> Result<(), AxisError> {
@@ -56,7 +52,7 @@ pub(super) fn section(html: &mut String, study: &Tradeoff) -> Result<(), AxisErr
     }
     html.push_str("</fieldset>\n");
     legend(html, study);
-    for (quantity, svg) in &figures {
+    for (quantity, figure) in &figures {
         let bar = study.reference.bar_of(*quantity);
         let below = if bar > 0.0 {
             format!(" Grey: below what the reference is known to, {}.", percent(bar))
@@ -65,7 +61,7 @@ pub(super) fn section(html: &mut String, study: &Tradeoff) -> Result<(), AxisErr
         };
         let _ = writeln!(
             html,
-            "<figure data-quantity=\"{}\">\n{svg}<figcaption>{}: {}.{below}</figcaption></figure>",
+            "<figure data-quantity=\"{}\">\n{figure}<figcaption>{}: {}.{below}</figcaption></figure>",
             quantity.word(),
             quantity.title(),
             escaped(quantity.norm())

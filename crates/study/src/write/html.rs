@@ -3,15 +3,49 @@
 use std::fmt::Write;
 use teeter_plot::escaped;
 
-/// A table with a heading; cells are HTML.
+/// Characters beside each other that a table has room for on a telephone.
+const NARROW: usize = 44;
+
+/// Of the first column, whose words may be broken, more characters are not counted.
+const FIRST: usize = 10;
+
+/// The text of HTML without its tags.
+fn without_tags(html: &str) -> String {
+    html.split('<')
+        .enumerate()
+        .map(|(k, part)| if k == 0 { part } else { part.split_once('>').map_or("", |(_, text)| text) })
+        .collect()
+}
+
+/// The longest word of a text of HTML, in characters.
+fn longest_word(html: &str) -> usize {
+    without_tags(html).split(' ').map(|word| word.chars().count()).max().unwrap_or(0)
+}
+
+/// Whether a table fits a narrow window if lines are broken between words.
+fn is_narrow(heading: &[&str], rows: &[Vec<String>]) -> bool {
+    let width = |column: usize| {
+        let cells = rows.iter().filter_map(|row| row.get(column)).map(|cell| longest_word(cell));
+        let width = cells.fold(longest_word(heading[column]), usize::max);
+        if column == 0 { width.min(FIRST) } else { width }
+    };
+    (0..heading.len()).map(width).sum::<usize>() <= NARROW
+}
+
+/// A table with a heading; cells are HTML. In a narrow window its type is smaller and its cells have several lines; where that
+/// isn't enough, each row becomes a list.
 pub(crate) fn html_table(heading: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let mut html = "<div class=\"scroll\" tabindex=\"0\"><table>\n<thead><tr>".to_owned();
+    let rows: Vec<Vec<String>> = rows.into_iter().collect();
+    let kind = if is_narrow(heading, &rows) { "fit" } else { "fit cards" };
+    let mut html = format!("<div class=\"scroll {kind}\" tabindex=\"0\"><table>\n<thead><tr>");
     for cell in heading {
         let _ = write!(html, "<th scope=\"col\">{cell}</th>");
     }
     html.push_str("</tr></thead>\n<tbody>\n");
     for row in rows {
-        let cells: String = row.iter().map(|cell| format!("<td>{cell}</td>")).collect();
+        let cells = row.iter().zip(heading);
+        let cells = cells.map(|(cell, of)| format!("<td data-of=\"{}\">{cell}</td>", without_tags(of)));
+        let cells: String = cells.collect();
         let _ = writeln!(html, "<tr>{cells}</tr>");
     }
     html.push_str("</tbody></table></div>\n");
@@ -46,6 +80,23 @@ pub(crate) fn capitalised(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_cell_says_what_it_is_of() {
+        let table = html_table(&["a", "b"], [vec!["1".to_owned(), "2".to_owned()]]);
+        assert!(table.contains("class=\"scroll fit\"") && table.contains("<td data-of=\"b\">2</td>"), "{table}");
+    }
+
+    #[test]
+    fn a_table_too_wide_for_a_telephone_becomes_a_list_there() {
+        let kind = |columns: usize, cell: &str| {
+            let table = html_table(&vec!["x"; columns], [vec![cell.to_owned(); columns]]);
+            if table.contains("class=\"scroll fit cards\"") { "list" } else { "table" }
+        };
+        assert_eq!((kind(4, "0.123456789"), kind(5, "0.123456789")), ("table", "list"));
+        // Lines are broken between words; tags take no room.
+        assert_eq!((kind(5, "0.1234 to 0.2345"), kind(5, "<code class=\"key\">0.1234</code>")), ("table", "table"));
+    }
 
     #[test]
     fn sentences_of_the_terminal_are_set_for_a_page() {

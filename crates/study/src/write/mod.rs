@@ -11,7 +11,7 @@ mod sentences;
 pub use csv::csv;
 pub(crate) use csv::quoted;
 pub use figure::figures;
-pub(crate) use html::{html_list, html_table};
+pub(crate) use html::{capitalised, html_list, html_table};
 pub use json::json;
 pub use page::page;
 pub use sentences::{advice, findings, pruning};

@@ -69,8 +69,18 @@ impl Page<'_> {
             let _ = writeln!(html, "<p>{}.</p></section>", capitalised(NOTHING_MOVES));
             return;
         }
-        for advised in advised(self.study) {
-            let _ = writeln!(html, "<div class=\"advised\"><h3>{}</h3>", escaped(&capitalised(&advised.target)));
+        let all = advised(self.study);
+        // What is enough for one accuracy is often the cheapest for the next one, too: it is said once.
+        for same in
+            all.chunk_by(|a, b| a.text == b.text && a.row.map(std::ptr::from_ref) == b.row.map(std::ptr::from_ref))
+        {
+            let Some((advised, others)) = same.split_last() else { continue };
+            let others = match others.iter().map(|other| percent(other.accuracy)).collect::<Vec<_>>() {
+                none if none.is_empty() => String::new(),
+                others => format!(" (and so within {})", others.join(", ")),
+            };
+            let target = format!("{}{others}", capitalised(&advised.target));
+            let _ = writeln!(html, "<div class=\"advised\"><h3>{}</h3>", escaped(&target));
             if let Some(row) = advised.row {
                 let _ = writeln!(html, "<p class=\"command\"><code>{}</code></p>", self.command(row));
             }

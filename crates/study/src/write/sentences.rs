@@ -8,6 +8,8 @@ use crate::{Advice, PERTURBATION, Quantity, Row, SEARCH_STAGES, Setting, TARGETS
 pub(super) struct Advised<'a> {
     /// Such as "within 10 % over the whole 1 s".
     pub(super) target: String,
+    /// The accuracy.
+    pub(super) accuracy: f64,
     /// The setting to take, if there is one.
     pub(super) row: Option<&'a Row>,
     /// What it costs and reaches, or why there is none.
@@ -17,7 +19,7 @@ pub(super) struct Advised<'a> {
 /// A sentence for each accuracy: the advised setting, as arguments to copy, or why there is none.
 #[must_use]
 pub fn advice(study: &Tradeoff) -> Vec<String> {
-    let sentence = |Advised { target, row, text }: Advised<'_>| match row {
+    let sentence = |Advised { target, row, text, .. }: Advised<'_>| match row {
         Some(row) => format!("to be {target} use {}: {text}", taken(study, row)),
         None => format!("{target}: {text}"),
     };
@@ -35,7 +37,8 @@ pub(super) fn advised(study: &Tradeoff) -> Vec<Advised<'_>> {
     let until = until(study);
     let warnings = |row: &Row| row.warned().iter().map(|warned| warned.text.clone()).collect::<Vec<_>>();
     let one = |(target, advice): (&f64, &Advice)| {
-        let target = format!("within {} {until}", percent(*target));
+        let accuracy = *target;
+        let target = format!("within {} {until}", percent(accuracy));
         let (row, text) = match advice {
             Advice::NotMeasurable => {
                 (None, format!("not measurable: the reference has an error bar of {}", percent(study.bar())))
@@ -76,7 +79,7 @@ pub(super) fn advised(study: &Tradeoff) -> Vec<Advised<'_>> {
                 (Some(row), format!("{}{faster}{unconfirmed}{warned}", cost(study, row)))
             }
         };
-        Advised { target, row, text }
+        Advised { target, accuracy, row, text }
     };
     TARGETS.iter().zip(&study.advice).map(one).collect()
 }

@@ -46,13 +46,13 @@ struct SeriesData {
 impl SeriesData {
     fn of(line: &Line, recorder: &PageRecorder, panels: &Panels, least: f64, steps: f64) -> Self {
         let (mut other_at, mut others, mut before) = (Vec::new(), Vec::new(), 0);
-        if let Some((column, factor)) = line.of.filter(|_| panels.curves.is_thinned()) {
+        if let Some(source) = line.of.filter(|_| panels.curves.is_thinned()) {
             let pictures = || recorder.kept.frames.rows().map(|(t, _)| t);
             // More of them than are drawn.
-            let values = recorder.kept.curves.values(column, pictures());
+            let values = recorder.kept.curves.values(source.column, pictures());
             let drawn = linear(&panels.curves.times(), &line.y, pictures());
             for (picture, (value, drawn)) in values.into_iter().zip(drawn).enumerate() {
-                let value = value.map(|value| factor * value);
+                let value = value.map(|value| source.drawn(value));
                 if value.is_some_and(|x| (x - drawn).abs() <= READ * x.abs().max(least)) {
                     continue;
                 }

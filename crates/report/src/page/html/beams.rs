@@ -8,7 +8,7 @@ use teeter_plot::escaped;
 
 /// The deflected shapes at chosen times.
 pub(super) fn shapes(recorder: &PageRecorder) -> String {
-    let figure = span::on_page("shapes", |id| span::shapes(recorder, id));
+    let figure = span::shapes(recorder, "shapes").map(span::on_page);
     figure.map_or_else(String::new, |figure| {
         format!(
             "<section id=\"shapes\" class=\"panel\" aria-labelledby=\"shapes-title\">\n\
@@ -46,7 +46,7 @@ pub(super) fn borne(recorder: &PageRecorder, summary: &Summary) -> String {
              {stresses}</section>"
         );
     }
-    if let Some(figure) = span::on_page("envelopes", |id| span::envelopes(recorder, id)) {
+    if let Some(figure) = span::envelopes(recorder, "envelopes").map(span::on_page) {
         let _ = writeln!(
             html,
             "<section id=\"envelopes\" class=\"panel\" aria-labelledby=\"envelopes-title\">\n<h3 id=\"envelopes-title\">Moment \

@@ -1,10 +1,10 @@
 //! Plots of how blocks, beams, ground and supports move.
 
-use super::{Curves, Line, Panels, Place, Portrait, PortraitLine, TimePanel, length_unit};
+use super::{Curves, Line, Panels, Place, Portrait, PortraitLine, Source, TimePanel, length_unit};
 use crate::driven::Driven;
 use crate::page::content::{ROUNDING, holds, largest, travel};
 use crate::page::orbit::Point;
-use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, PageRecorder};
+use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, BLOCK_FRAME, PageRecorder};
 use std::collections::BTreeSet;
 
 /// A coordinate of a block.
@@ -15,6 +15,8 @@ struct Coordinate {
     symbol: &'static str,
     velocity_symbol: &'static str,
     name: &'static str,
+    /// As measured from the start.
+    from_start: &'static str,
     velocity_name: &'static str,
 }
 
@@ -27,6 +29,7 @@ const COORDINATES: [Coordinate; 3] = [
         symbol: "x",
         velocity_symbol: "ẋ",
         name: "Position x",
+        from_start: "Displacement x − x₀",
         velocity_name: "Velocity ẋ",
     },
     Coordinate {
@@ -36,6 +39,7 @@ const COORDINATES: [Coordinate; 3] = [
         symbol: "y",
         velocity_symbol: "ẏ",
         name: "Height y",
+        from_start: "Displacement y − y₀",
         velocity_name: "Velocity ẏ",
     },
     Coordinate {
@@ -45,6 +49,7 @@ const COORDINATES: [Coordinate; 3] = [
         symbol: "φ",
         velocity_symbol: "ω",
         name: "Angle φ",
+        from_start: "Angle φ − φ₀",
         velocity_name: "Angular velocity ω",
     },
 ];
@@ -77,15 +82,24 @@ impl Panels {
                 continue;
             }
             let reach = recorder.scenery.blocks.iter().fold(0.0, |most: f64, block| most.max(block.reach));
+            let far = moving.iter().map(|(_, values)| travel(values)).fold(0.0, f64::max);
+            // Blocks that stand far apart would all look still.
+            let from_start = c != PHI && moving.len() > 1 && far < FAR * extent(&moving);
+            let zero = |k: usize| match recorder.kept.frames.rows().next() {
+                Some((_, start)) if from_start => start[BLOCK_FRAME * k + c],
+                _ => 0.0,
+            };
             let (unit, factor) = if c == PHI {
                 (display.angle.symbol(), display.angle.per_radian())
             } else {
-                length_unit(display.length, largest(moving.iter().flat_map(|(_, values)| values)))
+                let most = if from_start { far } else { largest(moving.iter().flat_map(|(_, values)| values)) };
+                length_unit(display.length, most)
             };
             // Wide enough that what is at rest looks so, and rounding on top of it isn't seen.
             let least = if c == PHI { 4e-5 * factor } else { 1e-4 * reach * factor };
-            let line = |curves: &Curves, k: usize, c: usize, factor: f64| {
-                Line::of(curves, BLOCK_COLUMNS * k + c, factor, block_label(recorder, k), k)
+            let line = |curves: &Curves, k: usize, c: usize, zero: f64, factor: f64| {
+                let source = Source { column: BLOCK_COLUMNS * k + c, zero, factor };
+                Line::from_zero(curves, source, block_label(recorder, k), k)
             };
             let guides = if c == PHI { critical_angles(recorder, &moving, factor) } else { Vec::new() };
             let panel = |id: &str, title: &str, unit: String, lines, guides, least| TimePanel {
@@ -100,8 +114,9 @@ impl Panels {
                 place: Place::Motion,
                 lines,
             };
-            let lines = moving.iter().map(|(k, _)| line(&self.curves, *k, c, factor)).collect();
-            self.panels.push(panel(coordinate.id, coordinate.name, unit.to_owned(), lines, guides, least));
+            let lines = moving.iter().map(|(k, _)| line(&self.curves, *k, c, zero(*k), factor)).collect();
+            let name = if from_start { coordinate.from_start } else { coordinate.name };
+            self.panels.push(panel(coordinate.id, name, unit.to_owned(), lines, guides, least));
             let rates: Vec<_> =
                 moving.iter().map(|(k, _)| (*k, self.curves.curve(BLOCK_COLUMNS * k + 3 + c))).collect();
             let (unit, factor) = if c == PHI {
@@ -109,7 +124,7 @@ impl Panels {
             } else {
                 length_unit(display.length, largest(rates.iter().flat_map(|(_, values)| values)))
             };
-            let lines = rates.iter().map(|(k, _)| line(&self.curves, *k, 3 + c, factor)).collect();
+            let lines = rates.iter().map(|(k, _)| line(&self.curves, *k, 3 + c, 0.0, factor)).collect();
             let least = if c == PHI { 2e-3 } else { 1e-4 * reach * factor };
             let unit = format!("{unit}/s");
             self.panels.push(panel(coordinate.velocity_id, coordinate.velocity_name, unit, lines, Vec::new(), least));
@@ -281,6 +296,15 @@ impl Panels {
             self.portraits.push(portrait);
         }
     }
+}
+
+/// Where no block goes farther than this part of the range in which all of them are, they are drawn from their starts.
+const FAR: f64 = 0.5;
+
+/// The range of all values.
+fn extent(moving: &[(usize, Vec<f64>)]) -> f64 {
+    let finite = || moving.iter().flat_map(|(_, values)| values).copied().filter(|x| x.is_finite());
+    finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min)
 }
 
 /// A block's name, if there are others.

@@ -1,12 +1,15 @@
 //! Measured and simulated motion over time, with their difference: the source paper's figures 2 and
 //! 3.
 
-use crate::compare::Comparison;
+use crate::compare::{ChannelComparison, Comparison};
 use crate::measured::Channel;
-use teeter_plot::{Axis, AxisError, Figure, Mark, Panel, Series, Theme};
+use teeter_plot::{Axis, AxisError, Figure, Legend, Mark, Panel, Series};
+use teeter_report::for_any_width;
 
-/// Most marks in a figure: beyond, they hide each other.
-const MOST_MARKS: usize = 1200;
+/// Most marks in a figure: beyond, they hide each other, and the lines.
+const MOST_MARKS: usize = 150;
+/// Width of the figures on the page where there is room, mm.
+const ON_PAGE: f64 = 120.0;
 /// Points of a line.
 const LINE_POINTS: usize = 4000;
 /// The number of a dashed blue line: the motion before a fit is told from the fitted one without colours, too.
@@ -22,7 +25,7 @@ pub fn svg_figures(comparison: &Comparison, width: f64) -> Result<Vec<(String, S
     motion_figures(comparison, None, Some(width))
 }
 
-/// The figures for files of a width, mm, or without one for pages; with `before`, also the motion before a fit.
+/// The figures for files of a width, mm, or without one as HTML for pages; with `before`, also the motion before a fit.
 pub(crate) fn motion_figures(
     comparison: &Comparison,
     before: Option<&Comparison>,
@@ -32,7 +35,7 @@ pub(crate) fn motion_figures(
         let figure = figure(comparison, before, found.channel)?;
         let svg = match width {
             Some(width) => figure.width_mm(width).to_svg(),
-            None => figure.theme(Theme::Page).to_svg(),
+            None => for_any_width(&figure, ON_PAGE),
         };
         Ok((format!("{}.svg", found.channel.word()), svg))
     });
@@ -69,12 +72,18 @@ fn figure(comparison: &Comparison, before: Option<&Comparison>, channel: Channel
     let x = Axis::between("Time t (s)", span.0, span.1);
     let simulated = line(comparison, channel, factor, span);
     let earlier = before.map(|before| line(before, channel, factor, span)).unwrap_or_default();
-    let off: Vec<f64> = found.simulated.value.iter().zip(&found.measured.value).map(|(a, b)| a - b).collect();
-    let off = points(&off);
+    let apart = |found: &ChannelComparison| {
+        let off = found.simulated.value.iter().zip(&found.measured.value).map(|(a, b)| a - b);
+        points(&off.collect::<Vec<f64>>())
+    };
+    let off = apart(found);
+    // What the fit has mended is hardly seen in the motions themselves.
+    let off_before = before.and_then(|before| before.channel(channel)).map(apart);
     let values = measured.iter().chain(&simulated).chain(&earlier).map(|point| point.1).filter(|y| y.is_finite());
     let y = Axis::linear(format!("{} ({unit})", channel.title()), values)?;
     let every = measured.len().div_ceil(MOST_MARKS).max(1);
     let name = if found.is_measured { "measured" } else { "measured, as the rate of the samples" };
+    let name = if every > 1 { format!("{name} (one row of {every})") } else { name.to_owned() };
     let marks = Series::marks(name, measured.into_iter().step_by(every), Mark::Circle).number(6).hollow().faint();
     let mut series = vec![marks];
     if before.is_some() {
@@ -88,8 +97,11 @@ fn figure(comparison: &Comparison, before: Option<&Comparison>, channel: Channel
     series.push(Series::line(name, simulated).number(1));
     let horizon: Vec<f64> = comparison.settings.horizon.into_iter().collect();
     let motion = Panel::new(y).with(series).height_mm(HEIGHTS[0]).guides(horizon.clone());
-    let low = Axis::linear(format!("Difference ({unit})"), off.iter().map(|point| point.1))?;
-    let difference = Panel::new(low).with([Series::line("", off).number(1)]).height_mm(HEIGHTS[1]).guides(horizon);
+    let both = off.iter().chain(off_before.iter().flatten()).map(|point| point.1);
+    let low = Axis::linear(format!("Difference ({unit})"), both)?;
+    let off_before = off_before.map(|off| Series::line("", off).number(DASHED));
+    let difference =
+        Panel::new(low).with(off_before).with([Series::line("", off).number(1)]).height_mm(HEIGHTS[1]).guides(horizon);
     let title = format!("{}: measured and simulated", channel.title());
-    Ok(Figure::new(channel.word(), title, x).panel(motion).panel(difference))
+    Ok(Figure::new(channel.word(), title, x).legend(Legend::Rows).panel(motion).panel(difference))
 }

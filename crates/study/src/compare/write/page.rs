@@ -11,14 +11,16 @@ use teeter_report::document;
 pub(crate) const STYLE: &str = "\
 main > section { margin-top: 1.5rem; }\n\
 .pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); gap: 1rem; }\n\
-.pictures svg { display: block; width: 100%; height: auto; max-width: 46rem; margin: 0 auto; }\n\
 p.headline { margin: .25rem 0 0; font-size: 1.125rem; font-weight: 600; max-width: 62rem; }\n\
 section li { margin: .3rem 0; overflow-wrap: anywhere; }\ncode { font-size: .9em; }\n\
 td:first-child { text-align: left; }\n";
 
 /// A number with so many decimals and a real minus.
 pub(crate) fn fixed(value: f64, decimals: usize) -> String {
-    format!("{value:.decimals$}").replace('-', "\u{2212}")
+    let text = format!("{value:.decimals$}");
+    // Rounded to zero, it has no sign.
+    let text = if text.parse() == Ok(0.0) { text.trim_start_matches('-') } else { &text };
+    text.replace('-', "\u{2212}")
 }
 
 fn optional(value: Option<f64>, show: impl Fn(f64) -> String) -> String {
@@ -128,15 +130,24 @@ pub fn page(comparison: &Comparison, title: &str, names: [&str; 3]) -> Result<St
     let [run, measured, block] = names;
     let subtitle = format!("{run} · {measured} · block {block} · teeter {}", env!("CARGO_PKG_VERSION"));
     let mut html = format!("<p class=\"headline\">{}</p>\n", escaped(&headline(comparison)));
-    html.push_str("<section class=\"panel\"><h3>Motion</h3>\n<div class=\"pictures\">\n");
-    for (_, svg) in motion_figures(comparison, None, None)? {
-        html.push_str(&svg);
+    html.push_str("<section class=\"panel\"><h2>Motion</h2>\n<div class=\"pictures\">\n");
+    for (_, figure) in motion_figures(comparison, None, None)? {
+        let _ = writeln!(html, "<div>{figure}</div>");
     }
     html.push_str("</div>");
     html.push_str(horizon_note(comparison));
-    html.push_str("</section>\n<section class=\"panel\"><h3>Differences</h3>\n");
+    html.push_str("</section>\n<section class=\"panel\"><h2>Differences</h2>\n");
     html.push_str(&html_table(
-        &["Quantity", "Root mean square", "share", "Largest difference", "share", "at", "Mean", "Noise of the samples"],
+        &[
+            "Quantity",
+            "Root mean square",
+            "its share",
+            "Largest difference",
+            "its share",
+            "its time",
+            "Mean",
+            "Noise of the samples",
+        ],
         comparison.channels.iter().map(quantity_row),
     ));
     html.push_str(
@@ -148,7 +159,7 @@ pub fn page(comparison: &Comparison, title: &str, names: [&str; 3]) -> Result<St
     html.push_str(&impacts(comparison));
     let _ = write!(
         html,
-        "<section class=\"panel\"><h3>How they are compared</h3>\n{}</section>\n",
+        "<section class=\"panel\"><h2>How they are compared</h2>\n{}</section>\n",
         html_list(&sentences_of(comparison))
     );
     Ok(document(&format!("Measured and simulated: {title}"), &subtitle, STYLE, &html))
@@ -214,11 +225,11 @@ fn half_cycles(comparison: &Comparison) -> String {
             fixed(degree * pair.measured.amplitude, 3),
             optional(simulated, |value| fixed(value, 3)),
             optional(pair.amplitude_ratio().map(|ratio| 100.0 * (ratio - 1.0)), |value| {
-                format!("{} %", fixed(value, 1))
+                format!("{}\u{a0}%", fixed(value, 1))
             }),
             optional(pair.measured.end, |value| fixed(value, 4)),
             optional(pair.simulated.and_then(|half| half.end), |value| fixed(value, 4)),
-            optional(pair.delay(), |value| format!("{} ms", fixed(1e3 * value, 2))),
+            optional(pair.delay(), |value| format!("{}\u{a0}ms", fixed(1e3 * value, 2))),
             optional(pair.phase(), |value| format!("{}°", fixed(value, 1))),
         ]
     });
@@ -226,17 +237,17 @@ fn half_cycles(comparison: &Comparison) -> String {
         &[
             "No.",
             "Amplitude measured (°)",
-            "simulated (°)",
+            "Amplitude simulated (°)",
             "Error",
             "Ends measured (s)",
-            "simulated (s)",
+            "Ends simulated (s)",
             "Delay",
             "Phase",
         ],
         rows,
     );
     format!(
-        "<section class=\"panel\"><h3>Half-cycles</h3>\n{table}<p class=\"note\">Between the zero crossings of φ. A positive delay: \
+        "<section class=\"panel\"><h2>Half-cycles</h2>\n{table}<p class=\"note\">Between the zero crossings of φ. A positive delay: \
          the simulated half-cycle ends later; 180° are a half-cycle.</p></section>\n"
     )
 }
@@ -256,7 +267,7 @@ fn impacts(comparison: &Comparison) -> String {
             (number + 1).to_string(),
             time(pair.measured),
             time(pair.simulated),
-            optional(delay, |delay| format!("{} ms", fixed(delay, 2))),
+            optional(delay, |delay| format!("{}\u{a0}ms", fixed(delay, 2))),
             ratio(pair.measured),
             ratio(pair.simulated),
         ]
@@ -264,7 +275,7 @@ fn impacts(comparison: &Comparison) -> String {
     let table =
         html_table(&["No.", "Measured (s)", "Simulated (s)", "Delay", "ω⁺/ω⁻ measured", "ω⁺/ω⁻ simulated"], rows);
     format!(
-        "<section class=\"panel\"><h3>Impacts</h3>\n{table}<p class=\"note\">Where φ crosses zero. ω before and after by lines \
+        "<section class=\"panel\"><h2>Impacts</h2>\n{table}<p class=\"note\">Where φ crosses zero. ω before and after by lines \
          through five rows on each side, extrapolated to the crossing, for both motions alike. A dash: only one of the motions \
          has the impact, or there are too few rows.{}</p></section>\n",
         above_one(comparison)

@@ -1,7 +1,8 @@
 //! The distribution of an output over an ensemble, and the comparison of several.
 
 use super::super::spec::{Node, Reader, entries};
-use super::{Ensemble, StudyFigure, axis_label, digits, text};
+use super::label::label;
+use super::{Ensemble, SHARE_ROOM, StudyFigure, digits, text};
 use crate::statistics::{KolmogorovSmirnov, share_at_most};
 use crate::sweep::figures::overturning::number;
 use crate::write::quoted;
@@ -50,8 +51,8 @@ impl Distribution {
         Some(Self { of, by, at_most, label })
     }
 
-    fn label(&self) -> String {
-        self.label.clone().unwrap_or_else(|| axis_label(&self.of))
+    fn label(&self, study: &Ensemble) -> String {
+        self.label.clone().unwrap_or_else(|| label(&study.sweep, &self.of))
     }
 }
 
@@ -90,9 +91,11 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
     let asked: Vec<&Distribution> =
         studies.iter().filter_map(|study| study.sweep.wanted().distribution.as_ref()).collect();
     let samples: Vec<Samples> = studies.iter().zip(&asked).map(|(study, asked)| Samples::of(study, asked)).collect();
-    let label = asked.first().map(|asked| asked.label()).unwrap_or_default();
+    let first = || asked.first().zip(studies.first());
+    let label_of_axis = first().map(|(asked, study)| asked.label(study)).unwrap_or_default();
+    let by_label = first().and_then(|(asked, study)| Some(label(&study.sweep, asked.by.as_deref()?)));
     let all = samples.iter().flat_map(|of| &of.by).flat_map(|(_, sample)| sample.iter().copied());
-    let axis = Axis::linear(&label, all)?;
+    let axis = Axis::linear(&label_of_axis, all)?;
     let end = axis.ends().1;
     let (mut table, mut rows, mut notes) = ("study,by,value,share\n".to_owned(), Vec::new(), Vec::new());
     let mut series = Vec::new();
@@ -131,10 +134,10 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
             ]);
         }
         if of.without > 0 {
-            notes.push(format!("{}: {} cases without a number are left out.", study.name, of.without));
+            notes.push(study.left_out(of.without, "a number"));
         }
         if study.table.incomplete() > 0 {
-            notes.push(format!("{}: {} cases without a result are left out.", study.name, study.table.incomplete()));
+            notes.push(study.left_out(study.table.incomplete(), "a result"));
         }
     }
     let mut tests = "study,against,by,distance,p_value,cases,cases_against\n".to_owned();
@@ -154,14 +157,18 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
                     sample.len(),
                     own.len()
                 );
-                let at = if by.is_empty() { String::new() } else { format!(" at {}", cell(by)) };
+                let at = if by.is_empty() {
+                    String::new()
+                } else {
+                    format!(", {} = {}", by_label.as_deref().unwrap_or_default(), cell(by))
+                };
                 let says = if p_value < 0.05 {
                     "the distributions differ at the level of 5 %"
                 } else {
                     "no difference is seen at the level of 5 %"
                 };
                 notes.push(format!(
-                    "{} against {}{at}: the largest distance is {}, Kolmogorov–Smirnov p = {}: {says}.",
+                    "`{}` against `{}`{at}: {says} (largest distance {}, Kolmogorov–Smirnov p = {}).",
                     other.name,
                     study.name,
                     digits(distance),
@@ -180,13 +187,9 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
     if let Some(most) = asked.first().and_then(|asked| asked.at_most) {
         notes.push(format!("Values above {} count as {0}.", digits(most)));
     }
-    let title = format!("Distribution: {label}");
-    let panel = Panel::new(Axis::between("Share of cases at or below", 0.0, 1.0)).with(series);
-    let by = asked.first().and_then(|asked| asked.by.as_deref()).map(axis_label);
-    if let Some(by) = &by {
-        notes.push(format!("Samples by {by}."));
-    }
-    let panel = panel.note(by);
+    let title = format!("Distribution: {label_of_axis}");
+    let shares = Axis::between("Share of cases at or below", -SHARE_ROOM, 1.0 + SHARE_ROOM);
+    let panel = Panel::new(shares).with(series).telling_apart().note(by_label.clone());
     let mut tables = vec![("distribution.csv", table)];
     if studies.len() > 1 {
         tables.push(("distribution_tests.csv", tests));
@@ -198,6 +201,11 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
         more: Vec::new(),
         tables,
         notes,
-        summary: (vec!["Study", "At", "Cases", "16 %", "Median", "84 %", "Largest"], rows),
+        summary: (
+            ["Study", &by_label.unwrap_or_default(), "Cases", "16 %", "Median", "84 %", "Largest"]
+                .map(str::to_owned)
+                .into(),
+            rows,
+        ),
     })
 }

@@ -2,7 +2,8 @@
 
 use super::super::criterion::Criterion;
 use super::super::spec::{Node, Reader, entries};
-use super::{Ensemble, StudyFigure, axis_label, digits, text};
+use super::label::label;
+use super::{Ensemble, SHARE_ROOM, StudyFigure, digits, text};
 use crate::statistics::{LognormalFit, NoFit, Observation, interval, resamples};
 use crate::write::quoted;
 use std::collections::BTreeMap;
@@ -71,9 +72,9 @@ impl Fragility {
         Some(Self { event, intensities, labels })
     }
 
-    fn label(&self, place: usize) -> String {
+    fn label(&self, place: usize, study: &Ensemble) -> String {
         let column = self.intensities.get(place).map(String::as_str).unwrap_or_default();
-        self.labels.get(place).cloned().unwrap_or_else(|| axis_label(column))
+        self.labels.get(place).cloned().unwrap_or_else(|| label(&study.sweep, column))
     }
 }
 
@@ -202,7 +203,8 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
             .zip(&asked)
             .map(|(study, asked)| Curve::of(Seen::of(study, asked, &asked.intensities[place])))
             .collect();
-        let label = asked.first().map(|asked| asked.label(place)).unwrap_or_default();
+        let label =
+            asked.first().zip(studies.first()).map(|(asked, study)| asked.label(place, study)).unwrap_or_default();
         panels.push((label.clone(), parts.panel(studies, &label, &curves)?));
         parts.compared(studies, &label, &curves);
     }
@@ -239,7 +241,9 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
         ],
         notes,
         summary: (
-            vec!["Study", "Intensity", "Median θ", "95 %", "Dispersion β", "95 %", "Cases", "Events", "Records"],
+            ["Study", "Intensity", "Median θ", "95 %", "Dispersion β", "95 %", "Cases", "Events", "Records"]
+                .map(str::to_owned)
+                .into(),
             parts.rows,
         ),
     })
@@ -303,7 +307,7 @@ impl Parts {
             let name = if curve.fit.is_ok() { "" } else { study.name.as_str() };
             series.push(Series::marks(name, points.collect::<Vec<_>>(), Mark::of(number)).number(number));
         }
-        Ok((axis, Panel::new(Axis::between("Probability", 0.0, 1.0)).with(series)))
+        Ok((axis, Panel::new(Axis::between("Probability", -SHARE_ROOM, 1.0 + SHARE_ROOM)).with(series)))
     }
 
     fn fit(&mut self, study: &Ensemble, label: &str, curve: &Curve, start: &str) {
@@ -333,20 +337,20 @@ impl Parts {
                 ]);
                 if failed > 0 {
                     self.notes.push(format!(
-                        "{}, {label}: {failed} of {RESAMPLES} resamples have no fit and are left out of the intervals, which \
+                        "{}: {failed} of {RESAMPLES} resamples have no fit and are left out of the intervals, which \
                          are too narrow then.",
-                        study.name
+                        study.about(label)
                     ));
                 }
             }
             Err(why) => {
                 let _ =
                     writeln!(self.fits, "{start},,,,,,,,{cases},{events},{groups},0,0,{}", quoted(&why.to_string()));
-                self.notes.push(format!("{}, {label}: no curve: {why}.", study.name));
+                self.notes.push(format!("{}: no curve, as {why}.", study.about(label)));
             }
         }
         if study.table.incomplete() > 0 {
-            let note = format!("{}: {} cases without a result are left out.", study.name, study.table.incomplete());
+            let note = study.left_out(study.table.incomplete(), "a result");
             if !self.notes.contains(&note) {
                 self.notes.push(note);
             }
@@ -361,7 +365,7 @@ impl Parts {
             let says = if low > 1.0 || high < 1.0 { "the medians differ" } else { "the medians can't be told apart" };
             let drawn = if paired { "the same records drawn for both" } else { "drawn independently" };
             self.notes.push(format!(
-                "{label}: the median of {} is {} times that of {}, 95 % from {} to {} ({drawn}): {says}.",
+                "{label}: the median of `{}` is {} times that of `{}`, 95 % from {} to {} ({drawn}): {says}.",
                 other.name,
                 digits(ratio),
                 study.name,

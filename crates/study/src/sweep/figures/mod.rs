@@ -3,6 +3,7 @@
 
 mod distribution;
 mod fragility;
+mod label;
 mod overturning;
 mod page;
 mod table;
@@ -16,7 +17,8 @@ pub(crate) use fragility::Fragility;
 pub(crate) use overturning::Overturning;
 pub use page::study_page;
 pub use table::{StudyTable, TableError};
-use teeter_plot::{AxisError, Figure, Theme};
+use teeter_plot::{AxisError, Figure};
+use teeter_report::for_any_width;
 use toml::de::DeTable;
 
 /// What is to be made of the table of a study.
@@ -104,6 +106,31 @@ pub struct Ensemble {
     pub table: StudyTable,
 }
 
+impl Ensemble {
+    /// What a sentence is about: a quantity, of this study where it has a name, as one of several.
+    fn about(&self, quantity: &str) -> String {
+        if self.name.is_empty() { quantity.to_owned() } else { format!("`{}`, {quantity}", self.name) }
+    }
+
+    /// A sentence on cases that lack something.
+    fn left_out(&self, cases: usize, what: &str) -> String {
+        let name = if self.name.is_empty() { String::new() } else { format!("`{}`: ", self.name) };
+        let are = if cases == 1 { "is" } else { "are" };
+        format!("{name}{} without {what} {are} left out.", counted(cases))
+    }
+}
+
+/// A number of cases.
+fn counted(cases: usize) -> String {
+    if cases == 1 { "1 case".to_owned() } else { format!("{cases} cases") }
+}
+
+/// Width of figures on the page where there is room, mm.
+const ON_PAGE: f64 = 120.0;
+
+/// Room below and above axes of shares, so that curves at 0 and 1 aren't hidden by the frame.
+const SHARE_ROOM: f64 = 0.03;
+
 /// A figure with its numbers, and what is said of it on the page.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -121,7 +148,7 @@ pub struct StudyFigure {
     /// Sentences: what it shows, and what limits it.
     pub notes: Vec<String>,
     /// The table on the page: its header and rows.
-    pub summary: (Vec<&'static str>, Vec<Vec<String>>),
+    pub summary: (Vec<String>, Vec<Vec<String>>),
 }
 
 impl StudyFigure {
@@ -134,10 +161,10 @@ impl StudyFigure {
         std::iter::once((format!("figures/{}.svg", self.name), svg(&self.figure))).chain(more).collect()
     }
 
-    /// As SVG for a page.
-    fn themed(&self) -> String {
+    /// As HTML for a page.
+    fn on_page(&self) -> String {
         let all = std::iter::once(&self.figure).chain(self.more.iter().map(|(_, figure)| figure));
-        all.map(|figure| figure.clone().theme(Theme::Page).to_svg()).collect()
+        all.map(|figure| format!("<div>{}</div>\n", for_any_width(figure, ON_PAGE))).collect()
     }
 }
 
@@ -172,19 +199,6 @@ fn digits(x: f64) -> String {
     let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
     let plain = rounded == 0.0 || (1e-3..1e5).contains(&rounded.abs());
     if plain { format!("{rounded}") } else { typeset(&format!("{rounded:e}")) }
-}
-
-/// The label of a column on an axis: of a key with its unit.
-fn axis_label(column: &str) -> String {
-    use teeter_scenario::keys::{Kind, PathTarget, find};
-    let unit = match find(column) {
-        Some(PathTarget::Key(_, key)) => match key.kind {
-            Kind::Quantity(dimension, _) => dimension.unit().to_string(),
-            _ => String::new(),
-        },
-        _ => String::new(),
-    };
-    if unit.is_empty() { column.to_owned() } else { format!("{column} ({unit})") }
 }
 
 /// A text under a word of a table.

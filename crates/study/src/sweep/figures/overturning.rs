@@ -2,7 +2,8 @@
 
 use super::super::criterion::Criterion;
 use super::super::spec::{Node, Reader, entries};
-use super::{Ensemble, StudyFigure, axis_label, text};
+use super::label::label;
+use super::{Ensemble, StudyFigure, counted, text};
 use std::fmt::Write;
 use teeter_plot::{Axis, AxisError, Figure, Legend, Panel, Series};
 use toml::de::DeTable;
@@ -54,9 +55,9 @@ impl Overturning {
         Some(Self { event, x, y, by, labels, by_label })
     }
 
-    fn label(&self, place: usize) -> String {
+    fn label(&self, place: usize, study: &Ensemble) -> String {
         let column = [&self.x, &self.y][place];
-        self.labels[place].clone().unwrap_or_else(|| axis_label(column))
+        self.labels[place].clone().unwrap_or_else(|| label(&study.sweep, column))
     }
 }
 
@@ -150,7 +151,7 @@ pub(super) fn figure(study: &Ensemble, asked: &Overturning) -> Result<StudyFigur
     let (across, up) = (Spread::of(&xs), Spread::of(&ys));
     let cells =
         |points: Vec<(f64, f64)>| points.into_iter().map(|(x, y)| (across.cell(x), up.cell(y))).collect::<Vec<_>>();
-    let (x, y) = (across.axis(asked.label(0)), up.axis(asked.label(1)));
+    let (x, y) = (across.axis(asked.label(0, study)), up.axis(asked.label(1, study)));
     let mut rows = Vec::new();
     let mut series: Vec<Series> = Vec::new();
     let mut rest: Vec<(f64, f64)> = Vec::new();
@@ -167,9 +168,9 @@ pub(super) fn figure(study: &Ensemble, asked: &Overturning) -> Result<StudyFigur
     if !rest.is_empty() {
         series.push(Series::cells("others", cells(rest)).number(MOST_KINDS));
     }
-    let mut notes = vec![format!("{events} of {cases} cases: {}.", asked.event.words())];
+    let mut notes = vec![asked.event.counted(events, cases)];
     if study.table.incomplete() > 0 {
-        notes.push(format!("{} cases without a result are left blank.", study.table.incomplete()));
+        notes.push(format!("{} without a result are left blank.", counted(study.table.incomplete())));
     }
     let title = format!("Where {}", asked.event.clause());
     let blank = match study.table.incomplete() {
@@ -189,7 +190,7 @@ pub(super) fn figure(study: &Ensemble, asked: &Overturning) -> Result<StudyFigur
         more: Vec::new(),
         tables: vec![("overturning.csv", table)],
         notes,
-        summary: (vec!["Event", "Cases"], rows),
+        summary: (["Event", "Cases"].map(str::to_owned).into(), rows),
     })
 }
 
@@ -224,7 +225,7 @@ mod tests {
         let some = map("[\"1 Hz\", \"2 Hz\"]", axis, true);
         assert!(some.figure.to_svg().contains(">not overturned</text>"));
         assert_eq!(some.summary.1.last().unwrap(), &["not overturned", "1"]);
-        assert_eq!(some.title, "Where a block overturned");
+        assert_eq!(some.title, "Where a block overturns");
         assert!(!map("[\"1 Hz\", \"2 Hz\"]", axis, false).figure.to_svg().contains("not overturned"));
     }
 

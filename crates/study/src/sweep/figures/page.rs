@@ -1,5 +1,6 @@
 //! `study.html`: a self-contained page in the style of a run's report.
 
+use super::label::label;
 use super::{Ensemble, StudyFigure};
 use crate::write::{html_list, html_table};
 use std::fmt::Write;
@@ -9,7 +10,7 @@ use teeter_report::document;
 const OWN_STYLE: &str = "\
 main > section { margin-top: 1.5rem; }\n\
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); gap: 1rem; }\n\
-.figures svg { display: block; width: 100%; height: auto; max-width: 44rem; margin: 0 auto; }\n\
+.figures svg { max-width: 44rem; }\n\
 li { margin: .3rem 0; overflow-wrap: anywhere; }\ntd:first-child { text-align: left; }\n";
 
 /// The page of the figures of a study, or of several side by side.
@@ -26,6 +27,12 @@ pub fn study_page(title: &str, studies: &[Ensemble], figures: &[StudyFigure]) ->
     let subtitle = studies.iter().map(told).collect::<Vec<_>>().join(" · ");
     let subtitle = format!("{subtitle} · teeter {}", env!("CARGO_PKG_VERSION"));
     let mut html = String::new();
+    for study in studies {
+        let name = if studies.len() > 1 { format!("{}: ", study.name) } else { String::new() };
+        let varied: Vec<String> = study.sweep.keys().into_iter().map(|key| label(&study.sweep, key)).collect();
+        let text = format!("{name}{}, varied: {}", study.sweep.scene(), varied.join(", "));
+        let _ = writeln!(html, "<p class=\"note\">{}</p>", escaped(&text));
+    }
     for figure in figures {
         section(&mut html, figure);
     }
@@ -35,10 +42,10 @@ pub fn study_page(title: &str, studies: &[Ensemble], figures: &[StudyFigure]) ->
 fn section(html: &mut String, figure: &StudyFigure) {
     let _ = writeln!(
         html,
-        "<section id=\"{}\" class=\"panel\"><h3>{}</h3>\n<div class=\"figures\">\n{}</div>",
+        "<section id=\"{}\" class=\"panel\"><h2>{}</h2>\n<div class=\"figures\">\n{}</div>",
         figure.name,
         escaped(&figure.title),
-        figure.themed()
+        figure.on_page()
     );
     let (header, rows) = &figure.summary;
     // Of a single study its name stands in the heading, and a column without an entry says nothing.
