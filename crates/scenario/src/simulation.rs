@@ -226,8 +226,12 @@ impl Simulation {
 
         layout.possible_contacts = possible_contacts(&model, &layout);
         let state = State::new(&model, &q, &v, scene.time.step)?;
-        let solver = teeter_solvers::plane_solver(&scene.solver.method)
-            .ok_or_else(|| BuildError::Solver(scene.solver.method.clone()))?;
+        let method = &scene.solver.method;
+        let solver = match shared {
+            Some(shared) => shared.solver(method),
+            None => teeter_solvers::plane_solver(method),
+        };
+        let solver = solver.ok_or_else(|| BuildError::Solver(method.clone()))?;
         let settings =
             SolverSettings { tolerance: scene.solver.tolerance, max_iterations: scene.solver.max_iterations };
         let work = Workspace::new(&model, wrap(solver), settings);

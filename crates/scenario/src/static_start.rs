@@ -107,10 +107,10 @@ impl<'a> InitialConfiguration<'a> {
         shared: Option<&SharedParts>,
     ) -> Result<Option<StaticStart>, BuildError> {
         let Some(shared) = shared.filter(|_| scene.beams.iter().any(|beam| beam.static_start)) else {
-            return self.search(scene);
+            return self.search(scene, shared);
         };
         let found = shared.settled(self.key(scene), || {
-            let start = self.search(scene)?;
+            let start = self.search(scene, Some(shared))?;
             let (poses, deflections, pressed) = (self.poses.clone(), self.deflections.clone(), self.pressed.clone());
             Ok::<_, BuildError>(Settled { poses, deflections, pressed, start })
         })?;
@@ -123,10 +123,8 @@ impl<'a> InitialConfiguration<'a> {
     /// All that an equilibrium depends on, as a text: numbers in it read back to the same doubles, zeros keep their sign. Of motions
     /// and histories only the start counts; what of the scene the search doesn't look at, such as time, isn't in it.
     fn key(&self, scene: &Scene) -> String {
-        let mut key = format!(
-            "{:?}{:?}{:?}{:?}{:?}",
-            scene.gravity, self.ground, self.poses, self.deflections, scene.contacts
-        );
+        let mut key =
+            format!("{:?}{:?}{:?}{:?}{:?}", scene.gravity, self.ground, self.poses, self.deflections, scene.contacts);
         let mut add = |part: &dyn std::fmt::Debug| {
             let _ = write!(key, "{part:?}");
         };
@@ -150,9 +148,9 @@ impl<'a> InitialConfiguration<'a> {
         key
     }
 
-    fn search(&mut self, scene: &Scene) -> Result<Option<StaticStart>, BuildError> {
+    fn search(&mut self, scene: &Scene, shared: Option<&SharedParts>) -> Result<Option<StaticStart>, BuildError> {
         let placed = (self.poses.clone(), self.deflections.clone());
-        let on_corners = self.settle_on(scene, Points::Corners);
+        let on_corners = self.settle_on(scene, Points::Corners, shared);
         let on_beams = scene.contacts.iter().any(|contact| {
             contact.sides && matches!(contact.surface, SupportingBody::Beam(k) if scene.beams[k].static_start)
         });
@@ -162,7 +160,7 @@ impl<'a> InitialConfiguration<'a> {
             found => {
                 (self.poses, self.deflections) = placed;
                 self.pressed.clear();
-                self.settle_on(scene, Points::All).map_err(|error| found.err().unwrap_or(error))
+                self.settle_on(scene, Points::All, shared).map_err(|error| found.err().unwrap_or(error))
             }
         }
     }
@@ -180,7 +178,12 @@ impl<'a> InitialConfiguration<'a> {
     }
 
     /// As [`settle`](Self::settle), with these points of blocks on beams.
-    fn settle_on(&mut self, scene: &Scene, points: Points) -> Result<Option<StaticStart>, BuildError> {
+    fn settle_on(
+        &mut self,
+        scene: &Scene,
+        points: Points,
+        shared: Option<&SharedParts>,
+    ) -> Result<Option<StaticStart>, BuildError> {
         let beams: Vec<usize> = (0..scene.beams.len()).filter(|&k| scene.beams[k].static_start).collect();
         let Some(&first) = beams.first() else { return Ok(None) };
         for &k in &beams {
@@ -207,7 +210,9 @@ impl<'a> InitialConfiguration<'a> {
         let settings = SolverSettings { tolerance: TOLERANCE, max_iterations: ITERATIONS };
         let mut summary = StaticStart::default();
         for _ in 0..MOST_RESETS {
-            let mut work = Workspace::new(&model, Box::new(Auto::new()), settings);
+            let solver = shared.and_then(|shared| shared.solver(Auto::<2>::NAME));
+            let solver = solver.unwrap_or_else(|| Box::new(Auto::new()));
+            let mut work = Workspace::new(&model, solver, settings);
             let found = settle(&model, 0.0, &bodies.coordinates(self), &limits, &mut work)
                 .map_err(|error| refusal(scene, &scene.beams[first].name, &pairs, error))?;
             limits.tau = found.tau;

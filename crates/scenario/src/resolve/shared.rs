@@ -5,11 +5,13 @@ use super::records::Scaling;
 use crate::diagnostic::Diagnostics;
 use crate::document::Document;
 use crate::driven::SharedBeam;
-use crate::scene::{AngleUnit, BeamScene, LengthUnit, RecordScene};
+use crate::scene::{AngleUnit, BeamScene, LengthUnit, MotionScene, RecordScene};
 use crate::simulation::BuildError;
+use crate::solver_pool::SolverPool;
 use crate::static_start::Settled;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use teeter_contact::ContactSolver;
 use teeter_integrator::Table;
 use teeter_record::Record;
 
@@ -20,14 +22,17 @@ const MOST_VALUES: usize = 4_000_000;
 /// Records held at most, as they are searched one by one.
 const MOST_RECORDS: usize = 256;
 
+/// Motions held at most.
+const MOST_MOTIONS: usize = 32;
+
 /// Beams and equilibria held at most, each: in studies that vary them, each case has its own.
 const MOST_BEAMS: usize = 32;
 
 /// What one scene after another is made of, held for the next one. Their text and files must be the same.
 #[derive(Debug, Default)]
 pub struct SharedParts {
-    /// That of an earlier scene.
-    document: Mutex<Option<Arc<Document>>>,
+    /// Those of earlier scenes that aren't in use: at most as many as there are threads.
+    documents: Mutex<Vec<Document>>,
     corrected: Mutex<Held<RecordKeys, Record>>,
     used: Mutex<Held<(RecordKeys, Placed), RecordScene>>,
     tables: Mutex<Held<TableKeys, Table>>,
@@ -35,6 +40,9 @@ pub struct SharedParts {
     beams: Mutex<Held<String, SharedBeam>>,
     settled: Mutex<Held<String, Settled>>,
     units: OnceLock<(Option<LengthUnit>, Option<AngleUnit>)>,
+    solvers: SolverPool,
+    /// By the texts of the paths and values in their tables.
+    motions: Mutex<Held<String, MotionScene>>,
     counts: Counts,
 }
 
@@ -95,20 +103,23 @@ pub(super) struct RecordKeys {
 type Placed = (String, Option<(&'static str, Scaling)>);
 
 impl SharedParts {
-    /// The document with these settings: an earlier one with other numbers if that is all they change, or made now.
-    pub(crate) fn document(
+    /// What `of` makes of the document with these settings: an earlier one with other numbers if that is all they change, or one
+    /// that is made now.
+    pub(crate) fn with_document<T>(
         &self,
         sets: &[(String, String)],
         make: impl FnOnce() -> Result<Document, Diagnostics>,
-    ) -> Result<Arc<Document>, Diagnostics> {
-        let lock = || self.document.lock().unwrap_or_else(PoisonError::into_inner);
-        let earlier = lock().clone();
-        if let Some(document) = earlier.and_then(|document| document.with_numbers(sets)) {
-            return Ok(Arc::new(document));
-        }
-        let document = Arc::new(make()?);
-        *lock() = Some(Arc::clone(&document));
-        Ok(document)
+        of: impl FnOnce(&Document) -> T,
+    ) -> Result<T, Diagnostics> {
+        let lock = || self.documents.lock().unwrap_or_else(PoisonError::into_inner);
+        let earlier = lock().pop();
+        let document = match earlier {
+            Some(mut document) if document.take_numbers(sets) => document,
+            _ => make()?,
+        };
+        let found = of(&document);
+        lock().push(document);
+        Ok(found)
     }
 
     /// The record as corrected, from earlier or made now.
@@ -131,6 +142,24 @@ impl SharedParts {
         Held::find_or(&self.tables, keys, || make().inspect(count), |of| 4 * of.rows().count())
     }
 
+    /// A contact solver with this name; `None` if there is none.
+    pub(crate) fn solver(&self, name: &str) -> Option<Box<dyn ContactSolver<2>>> {
+        self.solvers.take(name)
+    }
+
+    /// The prescribed motion of a body, from earlier or resolved now.
+    pub(super) fn motion(
+        &self,
+        keys: String,
+        resolve: impl FnOnce() -> Option<MotionScene>,
+    ) -> Option<Arc<MotionScene>> {
+        let size = |motion: &MotionScene| {
+            let tables = motion.0.iter().flatten().filter_map(|axis| axis.history.table());
+            tables.map(|table| 4 * table.rows().count()).sum()
+        };
+        Held::try_find_or(&self.motions, keys, MOST_MOTIONS, || resolve().ok_or(()), size).ok()
+    }
+
     /// The units that the text of the scenes uses most.
     pub(super) fn units(
         &self,
@@ -148,11 +177,7 @@ impl SharedParts {
     }
 
     /// A configuration in equilibrium, from earlier or found now.
-    pub(crate) fn settled<E>(
-        &self,
-        key: String,
-        find: impl FnOnce() -> Result<Settled, E>,
-    ) -> Result<Arc<Settled>, E> {
+    pub(crate) fn settled<E>(&self, key: String, find: impl FnOnce() -> Result<Settled, E>) -> Result<Arc<Settled>, E> {
         let count = |_: &Settled| _ = self.counts.settled.fetch_add(1, Ordering::Relaxed);
         let size = key.len();
         Held::try_find_or(&self.settled, key, MOST_BEAMS, || find().inspect(count), |of| size + of.size())

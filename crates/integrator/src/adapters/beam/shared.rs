@@ -48,7 +48,8 @@ impl SharedFactors {
     /// The factor of these weights; `None` where no more are held.
     pub(super) fn of(&self, w: Weights, backend: Backend) -> Result<Option<Arc<Factor>>, CholeskyError> {
         let key = ([w.mass, w.damping, w.stiffness].map(f64::to_bits), backend);
-        let find = |held: &Held| held.entries.iter().find(|(known, _)| *known == key).map(|(_, factor)| Arc::clone(factor));
+        let find =
+            |held: &Held| held.entries.iter().find(|(known, _)| *known == key).map(|(_, factor)| Arc::clone(factor));
         {
             let held = self.lock();
             let found = find(&held);
