@@ -384,7 +384,9 @@ fn beam_models(scene: &Scene, shared: Option<&SharedParts>) -> Result<Vec<BeamMo
             Some(shared) => BeamModel::of_shared(shared.beam(of)?),
             None => BeamModel::new(of)?,
         };
-        if of.motion.is_given() {
+        // Of a plain beam that stands still there is nothing to displace, and nothing to refuse.
+        let is_plain = of.reduction.is_none() && scene.loads.iter().all(|load| load.beam != number);
+        if of.motion.is_given() || !is_plain {
             model.displaced = model.body(scene, number)?.displacements(0.0);
         }
         Ok(model)

@@ -113,9 +113,10 @@ impl SharedParts {
     ) -> Result<T, Diagnostics> {
         let lock = || self.documents.lock().unwrap_or_else(PoisonError::into_inner);
         let earlier = lock().pop();
+        let earlier = earlier.and_then(|mut document| document.take_numbers(sets).then_some(document));
         let document = match earlier {
-            Some(mut document) if document.take_numbers(sets) => document,
-            _ => make()?,
+            Some(document) => document,
+            None => make()?,
         };
         let found = of(&document);
         lock().push(document);
