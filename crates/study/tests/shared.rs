@@ -4,6 +4,7 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
+use teeter_report::{EndedWord, Recorder, Summary};
 use teeter_scenario::simulation::Simulation;
 use teeter_study::sweep::{Sweep, run_cases};
 use teeter_study::{Setting, StudyScene};
@@ -132,5 +133,29 @@ fn rows_are_the_same_on_any_number_of_threads_and_stances_are_searched_for_once(
     assert_eq!(alone.iter().filter(|(_, line)| line.contains("complete")).count(), 8);
     for _ in 0..3 {
         assert_eq!(rows(4).0, alone);
+    }
+}
+
+#[test]
+fn values_of_a_summary_taken_one_by_one_are_those_of_its_json() {
+    for file in ["sweeps/block-on-beam.toml", "scenarios/two-span-beam.toml"] {
+        let setting = setting(&[("time.end", "20 ms")]);
+        let scene = source(file, std::slice::from_ref(&setting)).scene(&setting).unwrap();
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let layout = simulation.layout.clone();
+        let mut tell = |_: &str| {};
+        let mut recorder = Recorder::watching(&scene, &layout, &mut tell).unwrap();
+        simulation.run(&mut [&mut recorder]).unwrap();
+        let record = recorder.into_record();
+        let summary = Summary::new(&scene, &layout, &simulation.state, &record, EndedWord::Complete, 0.0);
+        let whole = serde_json::to_value(&summary).unwrap();
+        let whole = whole.as_object().unwrap();
+        assert!(whole.len() > 20);
+        for (key, value) in whole {
+            assert_eq!(summary.value(key).as_ref(), Some(value), "{file} {key}");
+        }
+        for key in ["beams", "deflections", "records", "crossing_count", "stopped_by", "none"] {
+            assert_eq!(summary.value(key).as_ref(), whole.get(key), "{file} {key}");
+        }
     }
 }
