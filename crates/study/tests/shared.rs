@@ -145,7 +145,7 @@ fn values_of_a_summary_taken_one_by_one_are_those_of_its_json() {
         let layout = simulation.layout.clone();
         let mut tell = |_: &str| {};
         let mut recorder = Recorder::watching(&scene, &layout, &mut tell).unwrap();
-        simulation.run(&mut [&mut recorder]).unwrap();
+        assert_eq!(simulation.run(&mut [&mut recorder]).unwrap(), teeter_integrator::Ended::Complete);
         let record = recorder.into_record();
         let summary = Summary::new(&scene, &layout, &simulation.state, &record, EndedWord::Complete, 0.0);
         let whole = serde_json::to_value(&summary).unwrap();
