@@ -113,7 +113,7 @@ mod workspace;
 #[cfg(feature = "beam")]
 pub use adapters::beam::forces::{BeamForces, SpanLoads};
 #[cfg(feature = "beam")]
-pub use adapters::beam::{BeamBody, BeamFace, BeamSurface, MovingForce, SignalLoad, WBackend};
+pub use adapters::beam::{BeamBody, BeamFace, BeamSurface, MovingForce, SharedFactors, SignalLoad, WBackend};
 #[cfg(feature = "bodies")]
 pub use adapters::blocks::{Block, BlockCoordinate, BlockLoad, Blocks};
 #[cfg(feature = "bodies")]

@@ -56,5 +56,5 @@ pub use summary::{EndedWord, RecordSummary, Summary};
 pub use taken_energy::ENERGY_TAKEN;
 pub use teeter_scenario::readable::{shortest, with_digits, with_unit};
 pub use unlocated::UNLOCATED;
-pub use verdict::{BodyVerdict, Fate, Fates, Side, StopReason, Way};
+pub use verdict::{BodyVerdict, Fate, Fates, SharedStances, Side, StopReason, Way};
 pub use warnings::{HORIZON, Warning, WarningLog};

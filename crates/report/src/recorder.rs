@@ -12,10 +12,11 @@ use crate::sections::{BeamRecord, Sections, Values};
 use crate::swings::{Swings, Watch};
 use crate::table::Table;
 use crate::verdict::{self, Fates};
-use crate::{EndedWord, Results, ResultsError, Schedule, WarningLog};
+use crate::{EndedWord, Results, ResultsError, Schedule, SharedStances, WarningLog};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use teeter_integrator::{
     Closing, ClosingMonitor, Ended, Model, Observer, ObserverError, PhaseKind, RockingMonitor, State, StepReport,
 };
@@ -181,6 +182,13 @@ impl<'a> Recorder<'a> {
     pub fn trajectory(&self) -> (String, &str) {
         let header = trajectory_header(self.layout, &self.sections, &self.driven);
         (header, std::str::from_utf8(self.trajectory.kept()).unwrap_or_default())
+    }
+
+    /// Takes how blocks stand from what recorders of earlier runs found, and leaves there what it finds.
+    #[must_use]
+    pub fn sharing(mut self, stances: &Arc<SharedStances>) -> Self {
+        self.fate_watch.share(stances);
+        self
     }
 
     fn fresh(

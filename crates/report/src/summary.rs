@@ -459,6 +459,52 @@ impl Summary {
         }
     }
 
+    /// The value that `summary.json` has under a key at its top, alone: a study wants few of them of each run, and the lists
+    /// may be long. `None` where it has no such key.
+    #[must_use]
+    pub fn value(&self, key: &str) -> Option<serde_json::Value> {
+        fn of(value: &impl Serialize) -> Option<serde_json::Value> {
+            serde_json::to_value(value).ok()
+        }
+        fn unless_empty<T: Serialize>(list: &Vec<T>) -> Option<serde_json::Value> {
+            if list.is_empty() { None } else { of(list) }
+        }
+        match key {
+            "title" => of(&self.title),
+            "version" => of(&self.version),
+            "scheme" => of(&self.scheme),
+            "dt" => of(&self.dt),
+            "steps" => of(&self.steps),
+            "t" => of(&self.t),
+            "wall_seconds" => of(&self.wall_seconds),
+            "us_per_step" => of(&self.us_per_step),
+            "contact" => of(&self.contact),
+            "max_penetration" => of(&self.max_penetration),
+            "energy" => of(&self.energy),
+            "impacts" => of(&self.impacts),
+            "impact_count" => of(&self.impact_count),
+            "reclosure_count" => of(&self.reclosure_count),
+            "unlocated_steps" => of(&self.unlocated_steps),
+            "crossings" => of(&self.crossings),
+            "crossing_count" => self.crossing_count.as_ref().and_then(of),
+            "peaks" => of(&self.peaks),
+            "beams" => unless_empty(&self.beams),
+            "deflections" => unless_empty(&self.deflections),
+            "records" => unless_empty(&self.records),
+            "headline" => of(&self.headline),
+            "verdict" => of(&self.verdict),
+            "max_phi_over_alpha" => of(&self.max_phi_over_alpha),
+            "overturned_at" => of(&self.overturned_at),
+            "rests_from" => of(&self.rests_from),
+            "stopped_by" => self.stopped_by.as_ref().and_then(of),
+            "horizon" => of(&self.horizon),
+            "ended" => of(&self.ended),
+            "model" => of(&self.model),
+            "warnings" => of(&self.warnings),
+            _ => None,
+        }
+    }
+
     /// As JSON text.
     ///
     /// # Errors

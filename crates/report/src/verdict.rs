@@ -13,8 +13,8 @@ use carrier::Carrier;
 pub(crate) use headline::headline;
 pub use lying::Side;
 use serde::{Deserialize, Serialize};
-pub use stance::Way;
 use stance::{Edge, Outline, Stance};
+pub use stance::{SharedStances, Way};
 use teeter_integrator::{Mismatch, Model, RockingMonitor, State};
 use teeter_scenario::scene::{BlockScene, Placement, Scene, StopScene, SupportingBody};
 use teeter_scenario::simulation::Layout;
@@ -226,6 +226,11 @@ impl Watch {
             stop: scene.time.stop,
             settles_at: scene.settles_at(),
         }
+    }
+
+    /// From now on stances are taken from there, and entered.
+    pub(crate) fn share(&mut self, stances: &std::sync::Arc<SharedStances>) {
+        self.blocks.iter_mut().filter_map(|block| block.outline.as_mut()).for_each(|outline| outline.share(stances));
     }
 }
 

@@ -3,11 +3,11 @@
 use crate::scene::{BeamScene, ForceScene, GroundScene, LoadKind, Scene};
 use crate::simulation::BuildError;
 use nalgebra::Vector2;
-use std::sync::Arc;
-use teeter_beam::{Beam, BeamError, Load, ModalBasis, SpanLoad};
+use std::sync::{Arc, OnceLock};
+use teeter_beam::{Beam, BeamError, Load, ModalBasis, SpanLoad, StaticError};
 use teeter_integrator::{
     BeamBody, BeamSurface, Block, BlockCoordinate, BlockLoad, Blocks, Ground, ModalBeam, ModelError, MovingForce,
-    Signal, SignalLoad, SpanLoads, Subsystem,
+    SharedFactors, Signal, SignalLoad, SpanLoads, Subsystem,
 };
 
 /// The blocks under their weight and forces, with their prescribed motion.
@@ -39,6 +39,32 @@ pub(crate) struct BeamModel {
     pub(crate) basis: Option<Arc<ModalBasis>>,
     /// Initial displacements x and y of its supports; empty if they don't move.
     pub(crate) displaced: Vec<f64>,
+    /// The same beam as other scenes have it, with what was found for them.
+    shared: Option<Arc<SharedBeam>>,
+}
+
+/// What depends on nothing of a beam but its specification and its reduction.
+#[derive(Debug)]
+pub(crate) struct SharedBeam {
+    basis: Option<Arc<ModalBasis>>,
+    /// Of the beam, with it.
+    pub(crate) factors: Arc<SharedFactors>,
+    /// Whether its supports hold it, once that was asked for.
+    held: OnceLock<Result<(), StaticError>>,
+}
+
+impl SharedBeam {
+    pub(crate) fn new(of: &BeamScene) -> Result<Self, BuildError> {
+        let BeamModel { beam, basis, .. } = BeamModel::new(of)?;
+        Ok(Self { basis, factors: Arc::new(SharedFactors::new(beam)), held: OnceLock::new() })
+    }
+
+    /// How many numbers it holds, about.
+    pub(crate) fn size(&self) -> usize {
+        let dofs = self.factors.beam().dofs();
+        // Matrices and factors of some diagonals each, and the shapes.
+        dofs * (200 + self.basis.as_ref().map_or(0, |basis| basis.len()))
+    }
 }
 
 impl BeamModel {
@@ -46,7 +72,21 @@ impl BeamModel {
         let beam = Beam::new(of.spec.clone()).map_err(|error| BuildError::Beam(of.name.clone(), error))?;
         let basis = of.reduction.map(|reduction| reduction.basis(&beam)).transpose();
         let basis = basis.map_err(|error| BuildError::Modes(of.name.clone(), error))?.map(Arc::new);
-        Ok(Self { beam: Arc::new(beam), basis, displaced: Vec::new() })
+        Ok(Self { beam: Arc::new(beam), basis, displaced: Vec::new(), shared: None })
+    }
+
+    pub(crate) fn of_shared(shared: Arc<SharedBeam>) -> Self {
+        let (beam, basis) = (Arc::clone(shared.factors.beam()), shared.basis.clone());
+        Self { beam, basis, displaced: Vec::new(), shared: Some(shared) }
+    }
+
+    /// Whether its supports hold it: the error of a static solve without loads.
+    pub(crate) fn check_held(&self) -> Result<(), StaticError> {
+        let solve = || self.beam.solve_static(&mut vec![0.0; self.beam.dofs()]);
+        match &self.shared {
+            Some(shared) => shared.held.get_or_init(solve).clone(),
+            None => solve(),
+        }
     }
 
     /// Its coordinates for a shape given by its dofs, or for the straight shape.
@@ -69,7 +109,13 @@ impl BeamModel {
         }
         let beam = Arc::clone(&self.beam);
         Ok(match &self.basis {
-            None => BeamSystem::Full(BeamBody::new(beam, position, surface)),
+            None => {
+                let body = BeamBody::new(beam, position, surface);
+                BeamSystem::Full(match &self.shared {
+                    Some(shared) => body.with_factors(Arc::clone(&shared.factors)),
+                    None => body,
+                })
+            }
             Some(basis) => {
                 let body = ModalBeam::new(beam, ModalBasis::clone(basis), position, surface);
                 BeamSystem::Modes(body.map_err(|error| BuildError::Modes(of.name.clone(), error))?)

@@ -61,6 +61,7 @@ mod separators;
 mod signal_resolution;
 mod signal_table;
 pub mod simulation;
+mod solver_pool;
 mod stable_step;
 mod static_start;
 pub mod swing;
@@ -151,8 +152,10 @@ impl ParsedScene {
         shared: &resolve::SharedParts,
         read: &mut resolve::ReadFile<'_>,
     ) -> Result<scene::Scene, diagnostic::Diagnostics> {
-        let document = shared.document(sets, || self.document(sets, read))?;
-        resolve::scene(&document, stem, shared, read).map_err(|found| in_order(found, sets))
+        let read = std::cell::RefCell::new(read);
+        let make = || self.document(sets, &mut |path| (*read.borrow_mut())(path));
+        let scene = |document: &_| resolve::scene(document, stem, shared, &mut |path| (*read.borrow_mut())(path));
+        shared.with_document(sets, make, scene)?.map_err(|found| in_order(found, sets))
     }
 
     /// The document with these settings; otherwise everything that is wrong with the scene.

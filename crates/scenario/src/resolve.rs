@@ -37,7 +37,7 @@ use crate::{output_size, quantity, wording};
 use teeter_contact::Law;
 use teeter_solvers::SOLVERS;
 
-pub use shared::SharedParts;
+pub use shared::{SharedCounts, SharedParts};
 pub use timing::MAX_STEPS;
 
 /// A resolved scene with its findings.
@@ -334,13 +334,15 @@ impl<'a, 'f> Resolver<'a, 'f> {
         let doc = self.doc;
         let named = |path: &str| doc.text(path);
         let default = Display::default();
+        let find = || (most_used(doc.source(), &LengthUnit::ALL), most_used(doc.source(), &AngleUnit::ALL));
+        let most_used_units = || self.shared.map_or_else(find, |shared| shared.units(find));
         let length = match named("output.length_unit") {
             Some(word) => LengthUnit::ALL.iter().find(|(known, _)| *known == word).map(|(_, unit)| *unit),
-            None => most_used(doc.source(), &LengthUnit::ALL),
+            None => most_used_units().0,
         };
         let angle = match named("output.angle_unit") {
             Some(word) => AngleUnit::ALL.iter().find(|(known, _)| *known == word).map(|(_, unit)| *unit),
-            None => most_used(doc.source(), &AngleUnit::ALL),
+            None => most_used_units().1,
         };
         Display {
             figure_width: doc.quantity("output.figure_width").unwrap_or(default.figure_width),

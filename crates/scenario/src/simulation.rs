@@ -6,7 +6,8 @@ use crate::opening::{OPEN_GAP, openings};
 use crate::overlap::{Outline, Overlap, PlacedOutline, deepest_overlap};
 use crate::placement::PlacementError;
 use crate::required::{Extent, Required, RestingBody};
-use crate::scene::{BlockScene, Crowd, Scene, SchemeName, SupportingBody, Time};
+use crate::resolve::SharedParts;
+use crate::scene::{BeamScene, BlockScene, Crowd, Scene, SchemeName, SupportingBody, Time};
 use crate::static_start::{InitialConfiguration, StaticStart};
 use crate::tilt_reference::{TiltReference, tilt_references};
 use nalgebra::Vector2;
@@ -159,6 +160,15 @@ impl Simulation {
         Self::with_solver(scene, |solver| solver)
     }
 
+    /// As [`Simulation::new`]; what of beams earlier scenes with the same `shared` had in common with this one is taken from there:
+    /// matrices, modes, factors, equilibria. The motion is the same to the last bit.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn with_shared(scene: &Scene, shared: &SharedParts) -> Result<Self, BuildError> {
+        Self::build(scene, Extent::Required, |solver| solver, Some(shared))
+    }
+
     /// As [`Simulation::new`]; `wrap` may wrap the scene's contact solver, for example to observe
     /// it.
     ///
@@ -180,15 +190,24 @@ impl Simulation {
         extent: Extent,
         wrap: impl FnOnce(Box<dyn ContactSolver<2>>) -> Box<dyn ContactSolver<2>>,
     ) -> Result<Self, BuildError> {
+        Self::build(scene, extent, wrap, None)
+    }
+
+    fn build(
+        scene: &Scene,
+        extent: Extent,
+        wrap: impl FnOnce(Box<dyn ContactSolver<2>>) -> Box<dyn ContactSolver<2>>,
+        shared: Option<&SharedParts>,
+    ) -> Result<Self, BuildError> {
         let blocks = block_bodies(scene)?;
-        let beams = beam_models(scene)?;
+        let beams = beam_models(scene, shared)?;
         let ground_start = scene.ground.as_ref().map(|of| driven::ground(of).coordinates(0.0)).unwrap_or_default();
         let required = Required::all(scene);
         let assembled = assemble(scene, &blocks, &beams, &required)?;
         let mut layout = lay_out(scene, &beams, &assembled, required);
 
         let mut start = InitialConfiguration::placed(scene, &blocks, &beams, &ground_start)?;
-        let static_start = start.settle(scene)?;
+        let static_start = start.settle(scene, shared)?;
         let (q, v) = start.coordinates(scene, assembled.model.size().q);
         for (k, pressed) in start.pressed {
             layout.beams[k].pressed = Some(pressed);
@@ -207,8 +226,12 @@ impl Simulation {
 
         layout.possible_contacts = possible_contacts(&model, &layout);
         let state = State::new(&model, &q, &v, scene.time.step)?;
-        let solver = teeter_solvers::plane_solver(&scene.solver.method)
-            .ok_or_else(|| BuildError::Solver(scene.solver.method.clone()))?;
+        let method = &scene.solver.method;
+        let solver = match shared {
+            Some(shared) => shared.solver(method),
+            None => teeter_solvers::plane_solver(method),
+        };
+        let solver = solver.ok_or_else(|| BuildError::Solver(method.clone()))?;
         let settings =
             SolverSettings { tolerance: scene.solver.tolerance, max_iterations: scene.solver.max_iterations };
         let work = Workspace::new(&model, wrap(solver), settings);
@@ -355,10 +378,17 @@ fn block_bodies(scene: &Scene) -> Result<Vec<BlockBody>, BuildError> {
 }
 
 /// The beams, with the initial displacements of their supports.
-fn beam_models(scene: &Scene) -> Result<Vec<BeamModel>, BuildError> {
-    let model = |(number, of)| {
-        let mut model = BeamModel::new(of)?;
-        model.displaced = model.body(scene, number)?.displacements(0.0);
+fn beam_models(scene: &Scene, shared: Option<&SharedParts>) -> Result<Vec<BeamModel>, BuildError> {
+    let model = |(number, of): (usize, &BeamScene)| {
+        let mut model = match shared {
+            Some(shared) => BeamModel::of_shared(shared.beam(of)?),
+            None => BeamModel::new(of)?,
+        };
+        // Of a plain beam that stands still there is nothing to displace, and nothing to refuse.
+        let is_plain = of.reduction.is_none() && scene.loads.iter().all(|load| load.beam != number);
+        if of.motion.is_given() || !is_plain {
+            model.displaced = model.body(scene, number)?.displacements(0.0);
+        }
         Ok(model)
     };
     scene.beams.iter().enumerate().map(model).collect()

@@ -8,10 +8,12 @@
 
 use crate::driven::{self, BeamModel};
 use crate::placement::{self, InstabilityMode, PlacementError, carried_by, starting_poses};
-use crate::scene::{Placement, Scene, SupportingBody};
+use crate::resolve::SharedParts;
+use crate::scene::{BeamScene, BlockScene, Placement, Scene, SupportingBody};
 use crate::simulation::{BlockBody, BuildError, Pairs, detector};
 use nalgebra::{Vector2, Vector3};
 use std::collections::BTreeSet;
+use std::fmt::Write;
 use teeter_beam::{SpanLoad, StaticError};
 use teeter_detect::{BodyId, PointPair, ShapePair, SidePair, SurfacePair};
 use teeter_integrator::{
@@ -99,9 +101,56 @@ impl<'a> InitialConfiguration<'a> {
     ///
     /// # Errors
     /// If there is no equilibrium, or it is not found.
-    pub(crate) fn settle(&mut self, scene: &Scene) -> Result<Option<StaticStart>, BuildError> {
+    pub(crate) fn settle(
+        &mut self,
+        scene: &Scene,
+        shared: Option<&SharedParts>,
+    ) -> Result<Option<StaticStart>, BuildError> {
+        let Some(shared) = shared.filter(|_| scene.beams.iter().any(|beam| beam.static_start)) else {
+            return self.search(scene, shared);
+        };
+        let found = shared.settled(self.key(scene), || {
+            let start = self.search(scene, Some(shared))?;
+            let (poses, deflections, pressed) = (self.poses.clone(), self.deflections.clone(), self.pressed.clone());
+            Ok::<_, BuildError>(Settled { poses, deflections, pressed, start })
+        })?;
+        self.poses.clone_from(&found.poses);
+        self.deflections.clone_from(&found.deflections);
+        self.pressed.clone_from(&found.pressed);
+        Ok(found.start.clone())
+    }
+
+    /// All that an equilibrium depends on, as a text: numbers in it read back to the same doubles, zeros keep their sign. Of motions
+    /// and histories only the start counts; what of the scene the search doesn't look at, such as time, isn't in it.
+    fn key(&self, scene: &Scene) -> String {
+        let mut key =
+            format!("{:?}{:?}{:?}{:?}{:?}", scene.gravity, self.ground, self.poses, self.deflections, scene.contacts);
+        let mut add = |part: &dyn std::fmt::Debug| {
+            let _ = write!(key, "{part:?}");
+        };
+        if let Some(ground) = &scene.ground {
+            add(&(ground.incline, ground.motion.is_given()));
+        }
+        for (of, model) in scene.beams.iter().zip(self.beams) {
+            let BeamScene { spec, thickness, top, static_start, shape, self_weight, reduction, position, .. } = of;
+            add(&(spec, thickness, top, static_start, shape, self_weight, reduction, position, &model.displaced));
+        }
+        for block in &scene.blocks {
+            let BlockScene { width, height, parts, matter, placement, motion, .. } = block;
+            add(&(width, height, parts, matter, placement, motion.0.each_ref().map(Option::is_some)));
+        }
+        for force in &scene.forces {
+            add(&(force.block, force.force, force.couple, force.history.signal().value(0.0)));
+        }
+        for load in &scene.loads {
+            add(&(load.beam, load.kind, load.history.signal().value(0.0)));
+        }
+        key
+    }
+
+    fn search(&mut self, scene: &Scene, shared: Option<&SharedParts>) -> Result<Option<StaticStart>, BuildError> {
         let placed = (self.poses.clone(), self.deflections.clone());
-        let on_corners = self.settle_on(scene, Points::Corners);
+        let on_corners = self.settle_on(scene, Points::Corners, shared);
         let on_beams = scene.contacts.iter().any(|contact| {
             contact.sides && matches!(contact.surface, SupportingBody::Beam(k) if scene.beams[k].static_start)
         });
@@ -111,7 +160,7 @@ impl<'a> InitialConfiguration<'a> {
             found => {
                 (self.poses, self.deflections) = placed;
                 self.pressed.clear();
-                self.settle_on(scene, Points::All).map_err(|error| found.err().unwrap_or(error))
+                self.settle_on(scene, Points::All, shared).map_err(|error| found.err().unwrap_or(error))
             }
         }
     }
@@ -129,14 +178,18 @@ impl<'a> InitialConfiguration<'a> {
     }
 
     /// As [`settle`](Self::settle), with these points of blocks on beams.
-    fn settle_on(&mut self, scene: &Scene, points: Points) -> Result<Option<StaticStart>, BuildError> {
+    fn settle_on(
+        &mut self,
+        scene: &Scene,
+        points: Points,
+        shared: Option<&SharedParts>,
+    ) -> Result<Option<StaticStart>, BuildError> {
         let beams: Vec<usize> = (0..scene.beams.len()).filter(|&k| scene.beams[k].static_start).collect();
         let Some(&first) = beams.first() else { return Ok(None) };
         for &k in &beams {
             // It is still straight, so an error here concerns its supports.
-            let beam = &self.beams[k].beam;
             let refused = |source| PlacementError::Static { beam: scene.beams[k].name.clone(), source };
-            match beam.solve_static(&mut vec![0.0; beam.dofs()]) {
+            match self.beams[k].check_held() {
                 // Blocks under it may hold what its supports don't.
                 Err(StaticError::RigidMotion { .. }) if !props(scene, &[k]).is_empty() => {}
                 found => found.map_err(refused)?,
@@ -157,7 +210,9 @@ impl<'a> InitialConfiguration<'a> {
         let settings = SolverSettings { tolerance: TOLERANCE, max_iterations: ITERATIONS };
         let mut summary = StaticStart::default();
         for _ in 0..MOST_RESETS {
-            let mut work = Workspace::new(&model, Box::new(Auto::new()), settings);
+            let solver = shared.and_then(|shared| shared.solver(Auto::<2>::NAME));
+            let solver = solver.unwrap_or_else(|| Box::new(Auto::new()));
+            let mut work = Workspace::new(&model, solver, settings);
             let found = settle(&model, 0.0, &bodies.coordinates(self), &limits, &mut work)
                 .map_err(|error| refusal(scene, &scene.beams[first].name, &pairs, error))?;
             limits.tau = found.tau;
@@ -186,6 +241,22 @@ impl<'a> InitialConfiguration<'a> {
             }
         }
         Ok(Some(summary))
+    }
+}
+
+/// A configuration in equilibrium.
+#[derive(Debug)]
+pub(crate) struct Settled {
+    poses: Vec<Vector3<f64>>,
+    deflections: Vec<Vec<f64>>,
+    pressed: Vec<(usize, Vec<SpanLoad>)>,
+    start: Option<StaticStart>,
+}
+
+impl Settled {
+    /// How many numbers it holds.
+    pub(crate) fn size(&self) -> usize {
+        3 * self.poses.len() + self.deflections.iter().map(Vec::len).sum::<usize>()
     }
 }
 

@@ -4,10 +4,12 @@
 use crate::Setting;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use teeter_report::SharedStances;
 use teeter_scenario::ParsedScene;
 use teeter_scenario::diagnostic::Diagnostics;
-use teeter_scenario::resolve::{ReadFile, Resolved, SharedParts};
+use teeter_scenario::resolve::{ReadFile, Resolved, SharedCounts, SharedParts};
 use teeter_scenario::scene::Scene;
+use teeter_scenario::simulation::{BuildError, Simulation};
 
 /// A scene in memory.
 #[derive(Debug, Clone)]
@@ -19,6 +21,7 @@ pub struct StudyScene {
     sets: Vec<(String, String)>,
     files: BTreeMap<String, Vec<u8>>,
     shared: Arc<SharedParts>,
+    stances: Arc<SharedStances>,
 }
 
 impl StudyScene {
@@ -45,6 +48,7 @@ impl StudyScene {
                 sets: sets.to_vec(),
                 files,
                 shared: Arc::default(),
+                stances: Arc::default(),
             },
             resolved,
         ))
@@ -73,7 +77,8 @@ impl StudyScene {
             // What is wrong with a case is told where the case is run.
             let _ = parsed.as_ref().map(|parsed| parsed.load(stem, &setting.pairs(), &mut kept));
         }
-        Self { bytes, parsed, stem: stem.to_owned(), sets: Vec::new(), files, shared: Arc::default() }
+        let (shared, stances) = (Arc::default(), Arc::default());
+        Self { bytes, parsed, stem: stem.to_owned(), sets: Vec::new(), files, shared, stances }
     }
 
     /// The bytes of the scene and of the files that it reads, in an order that depends on their
@@ -101,6 +106,26 @@ impl StudyScene {
     /// All errors of the scene with it.
     pub fn scene(&self, setting: &Setting) -> Result<Scene, Diagnostics> {
         self.parsed()?.scene(&self.stem, &self.sets_of(setting), &self.shared, &mut |path| self.file(path))
+    }
+
+    /// The simulation of a scene with some setting, with what of it such scenes share.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn simulation(&self, scene: &Scene) -> Result<Simulation, BuildError> {
+        Simulation::with_shared(scene, &self.shared)
+    }
+
+    /// What was made for all scenes so far.
+    #[must_use]
+    pub fn counts(&self) -> SharedCounts {
+        self.shared.counts()
+    }
+
+    /// How blocks stand, for the recorders of its runs.
+    #[must_use]
+    pub fn stances(&self) -> &Arc<SharedStances> {
+        &self.stances
     }
 
     fn parsed(&self) -> Result<&ParsedScene, Diagnostics> {

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
+use std::ops::Bound;
 
 use crate::decode;
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -115,6 +116,12 @@ impl Document {
     /// All values, sorted by path.
     pub fn entries(&self) -> impl Iterator<Item = (&str, &Entry)> {
         self.entries.iter().map(|(path, entry)| (path.as_str(), entry))
+    }
+
+    /// The values whose paths begin with `start`, sorted by path.
+    pub fn entries_from<'d>(&'d self, start: &'d str) -> impl Iterator<Item = (&'d str, &'d Entry)> {
+        let after = self.entries.range::<str, _>((Bound::Included(start), Bound::Unbounded));
+        after.map(|(path, entry)| (path.as_str(), entry)).take_while(move |(path, _)| path.starts_with(start))
     }
 
     /// Whether there is a value at the path, given or by default.
@@ -341,6 +348,26 @@ impl Document {
     /// in the place of a number (a word may decide about other keys), or that its key doesn't accept.
     #[must_use]
     pub fn with_numbers(&self, sets: &[(String, String)]) -> Option<Self> {
+        let numbers = self.numbers(sets)?;
+        let mut changed = self.clone();
+        changed.enter(numbers, sets);
+        Some(changed)
+    }
+
+    /// As [`Document::with_numbers`], in place; returns whether it could, and is unchanged if it couldn't.
+    #[must_use]
+    pub fn take_numbers(&mut self, sets: &[(String, String)]) -> bool {
+        let numbers = self.numbers(sets);
+        numbers.map(|numbers| self.enter(numbers, sets)).is_some()
+    }
+
+    fn enter(&mut self, numbers: Vec<(String, Entry)>, sets: &[(String, String)]) {
+        sets.clone_into(&mut self.sets);
+        self.entries.extend(numbers);
+    }
+
+    /// The entries that these settings change.
+    fn numbers(&self, sets: &[(String, String)]) -> Option<Vec<(String, Entry)>> {
         let same_key = |(own, other): (&(String, String), &(String, String))| own.0 == other.0;
         if self.sets.len() != sets.len() || !self.sets.iter().zip(sets).all(same_key) {
             return None;
@@ -363,12 +390,10 @@ impl Document {
             if !is_number(&value) || !is_number(&entry.value) {
                 return None;
             }
-            judged.push((path, Entry { key: entry.key, value, origin: node.origin, written: node.written }));
+            let entry = Entry { key: entry.key, value, origin: node.origin, written: node.written };
+            judged.push((path.to_owned(), entry));
         }
-        let mut changed = self.clone();
-        changed.sets = sets.to_vec();
-        judged.into_iter().for_each(|(path, entry)| changed.add(path, entry));
-        Some(changed)
+        Some(judged)
     }
 
     /// Sets a value that follows from others, so that [`Document::to_toml`] writes it.

@@ -209,6 +209,10 @@ fn other_numbers_give_the_document_that_reading_gives() {
     let other = sets("1.1 t/m^3", "8", "rough");
     let quick = first.with_numbers(&other).unwrap();
     assert_eq!(entries(&quick), entries(&read(&other).unwrap()));
+    let mut in_place = first.clone();
+    assert!(in_place.take_numbers(&other) && entries(&in_place) == entries(&quick));
+    // From one change to the next nothing of those before is left.
+    assert!(in_place.take_numbers(&sets("900 kg/m^3", "7", "rough")) && entries(&in_place) == entries(&first));
     assert_eq!(quick.quantity("fluid.water.density"), Some(1100.0));
     assert_eq!(quick.to_toml(), read(&other).unwrap().to_toml());
     // As if it had been read so: it can be changed on.
@@ -225,6 +229,8 @@ fn other_numbers_give_the_document_that_reading_gives() {
         sets("900 kg/m^3", "200", "rough"),
     ] {
         assert!(first.with_numbers(&told).is_none(), "{told:?}");
+        let mut unchanged = first.clone();
+        assert!(!unchanged.take_numbers(&told) && entries(&unchanged) == entries(&first), "{told:?}");
     }
     assert!(first.with_numbers(&sets("900 kg/m^3", "7", "rough")[..2]).is_none());
     // The last setting of a key counts.

@@ -6,6 +6,7 @@ pub(crate) mod forces;
 pub(crate) mod line;
 pub(crate) mod loads;
 pub(crate) mod motion;
+mod shared;
 
 use super::modal_motion::ModalMotion;
 use crate::{
@@ -18,6 +19,7 @@ use line::{Deflecting, Line};
 pub use loads::{MovingForce, SignalLoad};
 use motion::MovingSupports;
 use nalgebra::Vector2;
+pub use shared::SharedFactors;
 use std::sync::Arc;
 use teeter_beam::{Beam, Deflection, Load, MatrixWeights};
 use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
@@ -100,6 +102,7 @@ pub struct BeamBody {
     supports: Option<MovingSupports>,
     held: Vec<usize>,
     backend: WBackend,
+    factors: Option<Arc<SharedFactors>>,
     weight: Option<SelfWeight>,
 }
 
@@ -123,7 +126,17 @@ impl BeamBody {
     #[must_use]
     pub fn new(beam: Arc<Beam>, position: Vector2<f64>, surface: BeamSurface) -> Self {
         let held = (0..beam.dofs()).filter(|dof| beam.is_held(*dof)).collect();
-        Self { beam, position, surface, loads: Vec::new(), supports: None, held, backend: WBackend::Auto, weight: None }
+        Self {
+            beam,
+            position,
+            surface,
+            loads: Vec::new(),
+            supports: None,
+            held,
+            backend: WBackend::Auto,
+            factors: None,
+            weight: None,
+        }
     }
 
     /// Adds a load.
@@ -157,6 +170,15 @@ impl BeamBody {
     #[must_use]
     pub fn with_backend(mut self, backend: WBackend) -> Self {
         self.backend = backend;
+        self
+    }
+
+    /// Takes its factors from those that other models with the same beam have made, and leaves there
+    /// what it makes: the motion is the same to the last bit. Those of another beam are not taken.
+    /// By default it makes its own.
+    #[must_use]
+    pub fn with_factors(mut self, factors: Arc<SharedFactors>) -> Self {
+        self.factors = Arc::ptr_eq(factors.beam(), &self.beam).then_some(factors);
         self
     }
 
@@ -344,7 +366,7 @@ impl Dynamics<2> for BeamBody {
     }
 
     fn factor(&self, w: Weights, _q: &[f64]) -> Result<Box<dyn Compliance<2>>, FactorError> {
-        Ok(Box::new(BeamCompliance::new(&self.beam, w, self.backend)?))
+        Ok(Box::new(BeamCompliance::new(&self.beam, w, self.backend, self.factors.as_ref())?))
     }
 
     fn propagator(&self) -> Option<Box<dyn Propagator<2>>> {

@@ -6,6 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, TAU};
+use std::sync::{Arc, Mutex, PoisonError};
 use teeter_scenario::scene::BlockScene;
 
 /// The sides to which a block can go: the right (φ falls) and the left (φ rises).
@@ -73,6 +74,45 @@ pub(crate) struct Outline {
     size: f64,
     /// Direction of gravity, rad.
     pub(super) gamma: f64,
+    shared: Option<Arc<SharedStances>>,
+}
+
+/// How the blocks of one run after another stand, found once for the same block at the same angle: for
+/// [`Recorder::sharing`](crate::Recorder::sharing). It holds few of them, and may serve several threads.
+#[derive(Debug, Default)]
+pub struct SharedStances(Mutex<KnownStances>);
+
+#[derive(Debug, Default)]
+struct KnownStances {
+    /// By the bits of all numbers that decide them.
+    entries: Vec<(Vec<u64>, Option<Stance>)>,
+    searched: u64,
+}
+
+/// Most stances that are held: those of a scene of some blocks.
+const MOST_STANCES: usize = 64;
+
+impl SharedStances {
+    /// How many stances were searched for.
+    #[must_use]
+    pub fn searched(&self) -> u64 {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).searched
+    }
+
+    fn find_or(&self, key: Vec<u64>, search: impl FnOnce() -> Option<Stance>) -> Option<Stance> {
+        let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, stance)) = lock().entries.iter().find(|(known, _)| *known == key) {
+            return *stance;
+        }
+        let stance = search();
+        let mut known = lock();
+        known.searched += 1;
+        if known.entries.len() == MOST_STANCES {
+            known.entries.clear();
+        }
+        known.entries.push((key, stance));
+        stance
+    }
 }
 
 impl Outline {
@@ -87,7 +127,12 @@ impl Outline {
             rounding: block.corner_radius(number),
         });
         let corners = corners.collect();
-        Some(Self { corners, size: block.radius(), gamma: gravity[1].atan2(gravity[0]) })
+        Some(Self { corners, size: block.radius(), gamma: gravity[1].atan2(gravity[0]), shared: None })
+    }
+
+    /// From now on stances are taken from there, and entered.
+    pub(super) fn share(&mut self, stances: &Arc<SharedStances>) {
+        self.shared = Some(Arc::clone(stances));
     }
 
     /// The slope of what is level for gravity, rad.
@@ -121,6 +166,13 @@ impl Outline {
 
     /// How it stands at `angle` (rad).
     pub(crate) fn stance(&self, angle: f64) -> Option<Stance> {
+        let Some(shared) = &self.shared else { return self.search(angle) };
+        let of_corners = self.corners.iter().flat_map(|corner| [corner.arm, corner.direction, corner.rounding]);
+        let key = of_corners.chain([self.size, self.gamma, angle]).map(f64::to_bits).collect();
+        shared.find_or(key, || self.search(angle))
+    }
+
+    fn search(&self, angle: f64) -> Option<Stance> {
         let tops = self.tops();
         let (left, right) = (next(&tops, angle, Way::Left)?, next(&tops, angle, Way::Right)?);
         // A single top: it rolls about as a drum with an eccentric mass.

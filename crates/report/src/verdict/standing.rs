@@ -41,6 +41,14 @@ pub(super) fn at_start(
         let closed = candidate.gap <= layout.openings.of_pair(candidate.id.pair()).gap;
         for (side, [upper, lower]) in [[a, b], [b, a]].into_iter().enumerate() {
             let block = blocks.get(upper).filter(|_| upper != fixed);
+            // Known without a search for its stance, which takes long.
+            let is_placed_there = block.and_then(|block| block.on).is_some_and(|on| match on {
+                SupportingBody::Block(below) => node(below) == lower,
+                SupportingBody::Beam(_) | SupportingBody::Ground => lower == fixed,
+            });
+            if is_placed_there {
+                continue;
+            }
             if closed || block.is_some_and(|block| block.as_good_as_stands(candidate, side, layout, upper, state)) {
                 carried[lower].push(upper);
             }

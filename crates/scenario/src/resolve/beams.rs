@@ -1,5 +1,6 @@
 //! Resolves beams: sections, supports, damping, initial shapes.
 
+use std::sync::Arc;
 use teeter_beam::{
     Axial, Beam, BeamError, BeamSpec, Damping, DampingRatio, Foundation, Hold, MAX_ELEMENTS, ModesError, StaticError,
     Support,
@@ -189,7 +190,13 @@ impl Resolver<'_, '_> {
     pub(super) fn assembled(&mut self, beam: &mut BeamScene) {
         let path = format!("beam.{}", beam.name);
         let start = format!("{path}.start");
-        let model = match Beam::new(beam.spec.clone()) {
+        // A basis can't be found for every beam; that is told elsewhere.
+        let shared = self.shared.filter(|_| beam.reduction.is_none()).and_then(|shared| shared.beam(beam).ok());
+        let made = match &shared {
+            Some(shared) => Ok(Arc::clone(shared.factors.beam())),
+            None => Beam::new(beam.spec.clone()).map(Arc::new),
+        };
+        let model = match made {
             Ok(model) => model,
             Err(error) => {
                 self.errors.push(build_diagnostics::beam(&beam.name, &error, self.doc));

@@ -6,6 +6,7 @@ use crate::scene::{
     AxisScene, BeamScene, BlockScene, ContactScene, ForceScene, History, LoadKind, LoadScene, MotionScene, SignalScene,
     SupportingBody,
 };
+use std::fmt::Write;
 use teeter_integrator::{Formula, Given};
 
 /// The keys of a motion: translation x, y, and rotation.
@@ -41,6 +42,19 @@ impl Resolver<'_, '_> {
         if !self.doc.has_table(&path) {
             return Some(MotionScene::default());
         }
+        let Some(shared) = self.shared.filter(|_| signals.is_empty()) else {
+            return self.given_motion(owner, signals);
+        };
+        // Without signals it depends on the values in its table and the files alone.
+        let mut keys = String::new();
+        for (path, entry) in self.doc.entries_from(&format!("{path}.")) {
+            let _ = write!(keys, "{path} = {:?}; ", entry.value);
+        }
+        shared.motion(keys, || self.given_motion(owner, signals)).map(|motion| MotionScene::clone(&motion))
+    }
+
+    fn given_motion(&mut self, owner: &str, signals: &[Option<SignalScene>]) -> Option<MotionScene> {
+        let path = format!("{owner}.motion");
         let at = |key: &str| format!("{path}.{key}");
         let (shift, turn) = (self.one_of(&path, &SHIFTS)?, self.one_of(&path, &TURNS)?);
         let recorded = self.recorded(&path)?;

@@ -1,10 +1,18 @@
-//! What the scenes of a study have in common: the document but for some numbers, and records, read and corrected once.
+//! What the scenes of a study have in common: the document but for some numbers, records and tables, read and corrected once, and
+//! beams with their factors and equilibria.
 
 use super::records::Scaling;
 use crate::diagnostic::Diagnostics;
 use crate::document::Document;
-use crate::scene::RecordScene;
-use std::sync::{Arc, Mutex, PoisonError};
+use crate::driven::SharedBeam;
+use crate::scene::{AngleUnit, BeamScene, LengthUnit, MotionScene, RecordScene};
+use crate::simulation::BuildError;
+use crate::solver_pool::SolverPool;
+use crate::static_start::Settled;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use teeter_contact::ContactSolver;
+use teeter_integrator::Table;
 use teeter_record::Record;
 
 /// Accelerations that are held at most, some 30 MB: of a study in which every case cuts its record differently, all but a few
@@ -14,13 +22,63 @@ const MOST_VALUES: usize = 4_000_000;
 /// Records held at most, as they are searched one by one.
 const MOST_RECORDS: usize = 256;
 
+/// Motions held at most.
+const MOST_MOTIONS: usize = 32;
+
+/// Beams and equilibria held at most, each: in studies that vary them, each case has its own.
+const MOST_BEAMS: usize = 32;
+
 /// What one scene after another is made of, held for the next one. Their text and files must be the same.
 #[derive(Debug, Default)]
 pub struct SharedParts {
-    /// That of an earlier scene.
-    document: Mutex<Option<Arc<Document>>>,
+    /// Those of earlier scenes that aren't in use: at most as many as there are threads.
+    documents: Mutex<Vec<Document>>,
     corrected: Mutex<Held<RecordKeys, Record>>,
     used: Mutex<Held<(RecordKeys, Placed), RecordScene>>,
+    tables: Mutex<Held<TableKeys, Table>>,
+    /// By the texts of their specification and reduction.
+    beams: Mutex<Held<String, SharedBeam>>,
+    settled: Mutex<Held<String, Settled>>,
+    units: OnceLock<(Option<LengthUnit>, Option<AngleUnit>)>,
+    solvers: SolverPool,
+    /// By the texts of the paths and values in their tables.
+    motions: Mutex<Held<String, MotionScene>>,
+    counts: Counts,
+}
+
+#[derive(Debug, Default)]
+struct Counts {
+    beams: AtomicU64,
+    settled: AtomicU64,
+    tables: AtomicU64,
+}
+
+/// How often parts were made for scenes that share them: the same on every machine. Two threads may make the same one.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct SharedCounts {
+    /// Beams that were meshed and assembled, with their modes.
+    pub beams: u64,
+    /// Equilibria that were searched for.
+    pub equilibria: u64,
+    /// Factors of the beams that are held.
+    pub factors: u64,
+    /// Tables of signals that were read.
+    pub tables: u64,
+}
+
+/// What decides what a table of a signal is.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct TableKeys {
+    pub(super) file: String,
+    /// The bits of the start, s.
+    pub(super) start: u64,
+    /// Those of the step, s.
+    pub(super) step: Option<u64>,
+    pub(super) columns: Option<[String; 2]>,
+    pub(super) time_unit: Option<String>,
+    /// The word for what it is there.
+    pub(super) outside: Option<String>,
 }
 
 /// What decides what a record is before it is scaled.
@@ -45,20 +103,24 @@ pub(super) struct RecordKeys {
 type Placed = (String, Option<(&'static str, Scaling)>);
 
 impl SharedParts {
-    /// The document with these settings: an earlier one with other numbers if that is all they change, or made now.
-    pub(crate) fn document(
+    /// What `of` makes of the document with these settings: an earlier one with other numbers if that is all they change, or one
+    /// that is made now.
+    pub(crate) fn with_document<T>(
         &self,
         sets: &[(String, String)],
         make: impl FnOnce() -> Result<Document, Diagnostics>,
-    ) -> Result<Arc<Document>, Diagnostics> {
-        let lock = || self.document.lock().unwrap_or_else(PoisonError::into_inner);
-        let earlier = lock().clone();
-        if let Some(document) = earlier.and_then(|document| document.with_numbers(sets)) {
-            return Ok(Arc::new(document));
-        }
-        let document = Arc::new(make()?);
-        *lock() = Some(Arc::clone(&document));
-        Ok(document)
+        of: impl FnOnce(&Document) -> T,
+    ) -> Result<T, Diagnostics> {
+        let lock = || self.documents.lock().unwrap_or_else(PoisonError::into_inner);
+        let earlier = lock().pop();
+        let earlier = earlier.and_then(|mut document| document.take_numbers(sets).then_some(document));
+        let document = match earlier {
+            Some(document) => document,
+            None => make()?,
+        };
+        let found = of(&document);
+        lock().push(document);
+        Ok(found)
     }
 
     /// The record as corrected, from earlier or made now.
@@ -73,6 +135,66 @@ impl SharedParts {
         make: impl FnOnce() -> Option<RecordScene>,
     ) -> Option<Arc<RecordScene>> {
         Held::find_or(&self.used, keys, make, |of| 4 * of.record.len())
+    }
+
+    /// The table of a signal, from earlier or read now.
+    pub(super) fn table(&self, keys: &TableKeys, make: impl FnOnce() -> Option<Table>) -> Option<Arc<Table>> {
+        let count = |_: &Table| _ = self.counts.tables.fetch_add(1, Ordering::Relaxed);
+        Held::find_or(&self.tables, keys, || make().inspect(count), |of| 4 * of.rows().count())
+    }
+
+    /// A contact solver with this name; `None` if there is none.
+    pub(crate) fn solver(&self, name: &str) -> Option<Box<dyn ContactSolver<2>>> {
+        self.solvers.take(name)
+    }
+
+    /// The prescribed motion of a body, from earlier or resolved now.
+    pub(super) fn motion(
+        &self,
+        keys: String,
+        resolve: impl FnOnce() -> Option<MotionScene>,
+    ) -> Option<Arc<MotionScene>> {
+        let size = |motion: &MotionScene| {
+            let tables = motion.0.iter().flatten().filter_map(|axis| axis.history.table());
+            tables.map(|table| 4 * table.rows().count()).sum()
+        };
+        Held::try_find_or(&self.motions, keys, MOST_MOTIONS, || resolve().ok_or(()), size).ok()
+    }
+
+    /// The units that the text of the scenes uses most.
+    pub(super) fn units(
+        &self,
+        find: impl FnOnce() -> (Option<LengthUnit>, Option<AngleUnit>),
+    ) -> (Option<LengthUnit>, Option<AngleUnit>) {
+        *self.units.get_or_init(find)
+    }
+
+    /// A beam, from earlier or made now.
+    pub(crate) fn beam(&self, of: &BeamScene) -> Result<Arc<SharedBeam>, BuildError> {
+        let count = |_: &SharedBeam| _ = self.counts.beams.fetch_add(1, Ordering::Relaxed);
+        let key = format!("{:?}{:?}", of.spec, of.reduction);
+        let made = |shared: &SharedBeam| shared.size();
+        Held::try_find_or(&self.beams, key, MOST_BEAMS, || SharedBeam::new(of).inspect(count), made)
+    }
+
+    /// A configuration in equilibrium, from earlier or found now.
+    pub(crate) fn settled<E>(&self, key: String, find: impl FnOnce() -> Result<Settled, E>) -> Result<Arc<Settled>, E> {
+        let count = |_: &Settled| _ = self.counts.settled.fetch_add(1, Ordering::Relaxed);
+        let size = key.len();
+        Held::try_find_or(&self.settled, key, MOST_BEAMS, || find().inspect(count), |of| size + of.size())
+    }
+
+    /// What was made so far.
+    #[must_use]
+    pub fn counts(&self) -> SharedCounts {
+        let of = |count: &AtomicU64| count.load(Ordering::Relaxed);
+        let beams = self.beams.lock().unwrap_or_else(PoisonError::into_inner);
+        SharedCounts {
+            beams: of(&self.counts.beams),
+            equilibria: of(&self.counts.settled),
+            factors: beams.entries.iter().map(|(_, beam)| beam.factors.made()).sum(),
+            tables: of(&self.counts.tables),
+        }
     }
 }
 
@@ -98,19 +220,30 @@ impl<K: PartialEq + Clone, V> Held<K, V> {
         make: impl FnOnce() -> Option<V>,
         size: impl Fn(&V) -> usize,
     ) -> Option<Arc<V>> {
+        Self::try_find_or(held, key.clone(), MOST_RECORDS, || make().ok_or(()), size).ok()
+    }
+
+    /// The same for what may fail, and with the most entries given.
+    fn try_find_or<E>(
+        held: &Mutex<Self>,
+        key: K,
+        most: usize,
+        make: impl FnOnce() -> Result<V, E>,
+        size: impl Fn(&V) -> usize,
+    ) -> Result<Arc<V>, E> {
         let lock = || held.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, value)) = lock().entries.iter().find(|(known, _)| known == key) {
-            return Some(Arc::clone(value));
+        if let Some((_, value)) = lock().entries.iter().find(|(known, _)| *known == key) {
+            return Ok(Arc::clone(value));
         }
         let value = Arc::new(make()?);
         let size = size(&value);
         let mut held = lock();
-        if held.size + size > MOST_VALUES || held.entries.len() == MOST_RECORDS {
+        if held.size + size > MOST_VALUES || held.entries.len() == most {
             *held = Self::default();
         }
         held.size += size;
-        held.entries.push((key.clone(), Arc::clone(&value)));
-        Some(value)
+        held.entries.push((key, Arc::clone(&value)));
+        Ok(value)
     }
 }
 

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use super::Resolver;
+use super::shared::TableKeys;
 use crate::scene::{History, SignalScene};
 use crate::signal_table;
 use crate::words;
-use teeter_integrator::{Chirp, Formula, Growth, SignalError};
+use teeter_integrator::{Chirp, Formula, Growth, SignalError, Table};
 
 /// A formula, or what is wrong with its numbers.
 type FormulaResult = Result<Formula, SignalError>;
@@ -22,7 +23,7 @@ impl Resolver<'_, '_> {
     pub(super) fn signal(&mut self, name: &str) -> Option<SignalScene> {
         let path = format!("signal.{name}");
         let history = match self.choice(&format!("{path}.shape"))? {
-            words::History::Table => History::Table(Arc::new(self.table(&path)?)),
+            words::History::Table => History::Table(self.table(&path)?),
             words::History::Constant => self.formula(&path, Self::constant)?,
             words::History::Ramp => self.formula(&path, |this, path| this.with_duration(path, Formula::ramp))?,
             words::History::HalfSine => {
@@ -120,7 +121,7 @@ impl Resolver<'_, '_> {
         }
     }
 
-    fn table(&mut self, path: &str) -> Option<teeter_integrator::Table> {
+    fn table(&mut self, path: &str) -> Option<Arc<Table>> {
         let at = |key: &str| format!("{path}.{key}");
         let doc = self.doc;
         let start = self.quantity(&at("start"));
@@ -133,7 +134,25 @@ impl Resolver<'_, '_> {
             return None;
         }
         let (start, file) = (start?, file?);
-        let bytes = match self.file(&file) {
+        let Some(shared) = self.shared else { return self.read_table(path, start, &file, unit).map(Arc::new) };
+        let text = |key: &str| doc.text(&at(key)).map(str::to_owned);
+        let keys = TableKeys {
+            file,
+            start: start.to_bits(),
+            step: doc.quantity(&at("step")).map(f64::to_bits),
+            columns: doc.text_pair(&at("columns")).map(|pair| pair.map(str::to_owned)),
+            time_unit: text("time_unit"),
+            outside: text("outside"),
+        };
+        shared.table(&keys, || self.read_table(path, start, &keys.file, unit))
+    }
+
+    /// The table in a file.
+    fn read_table(&mut self, path: &str, start: f64, file: &str, unit: Option<words::TimeUnit>) -> Option<Table> {
+        let at = |key: &str| format!("{path}.{key}");
+        let doc = self.doc;
+        let given = |key: &str| doc.is_given(&at(key)) || doc.is_refused(&at(key));
+        let bytes = match self.file(file) {
             Ok(bytes) => bytes,
             Err(why) => {
                 self.error(&at("file"), why, "paths are relative to the scene's file");

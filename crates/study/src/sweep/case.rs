@@ -9,7 +9,6 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use teeter_report::{EndedWord, Recorder, Summary};
-use teeter_scenario::simulation::Simulation;
 
 /// How a case ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -165,7 +164,7 @@ fn run_once(
         Ok(scene) => scene,
         Err(found) => return refused(Failure::from(found).to_string()),
     };
-    let mut simulation = match Simulation::new(&scene) {
+    let mut simulation = match source.simulation(&scene) {
         Ok(simulation) => simulation,
         Err(error) => return refused(error.to_string()),
     };
@@ -179,7 +178,7 @@ fn run_once(
         Recorder::in_memory(&scene, &layout, &mut tell)
     };
     let mut recorder = match recorder {
-        Ok(recorder) => recorder,
+        Ok(recorder) => recorder.sharing(source.stances()),
         Err(error) => return failed(error.to_string()),
     };
     let ended = match simulation.run(&mut [&mut recorder]) {
@@ -201,14 +200,11 @@ fn run_once(
     let summary = if paths.peek().is_some() {
         let of_records = paths.any(|path| path.split('.').next() == Some("records"));
         let summary = if of_records { Summary::new } else { Summary::without_records };
-        match serde_json::to_value(summary(&scene, &layout, state, &record, word, 0.0)) {
-            Ok(summary) => summary,
-            Err(error) => return failed(error.to_string()),
-        }
+        Some(summary(&scene, &layout, state, &record, word, 0.0))
     } else {
-        serde_json::Value::Null
+        None
     };
-    let outputs = sweep.outputs().iter().map(|output| output.cell(&summary, &columns, &scene)).collect();
+    let outputs = sweep.outputs().iter().map(|output| output.cell(summary.as_ref(), &columns, &scene)).collect();
     Some(CaseRow {
         number,
         status: CaseStatus::Ran(word),

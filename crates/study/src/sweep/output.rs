@@ -2,6 +2,8 @@
 
 use super::spec::{Node, Reader, entries};
 use serde_json::Value;
+use std::borrow::Cow;
+use teeter_report::Summary;
 use teeter_scenario::scene::Scene;
 
 /// Which row of a column is wanted.
@@ -162,7 +164,7 @@ impl Output {
     }
 
     /// The text of its cell: empty where there is no such value.
-    pub(crate) fn cell(&self, summary: &Value, columns: &Columns, scene: &Scene) -> String {
+    pub(crate) fn cell(&self, summary: Option<&Summary>, columns: &Columns, scene: &Scene) -> String {
         match &self.origin {
             Origin::Spectral { period, of } => {
                 let mut records = scene.records();
@@ -170,7 +172,12 @@ impl Output {
                 let value = record.and_then(|record| record.spectral_acceleration(*period));
                 value.map(|value| format!("{value:?}")).unwrap_or_default()
             }
-            Origin::Summary(path) => at_path(summary, path).map(text_of).unwrap_or_default(),
+            Origin::Summary(path) => {
+                let (key, rest) = path.split_once('.').map_or((path.as_str(), None), |(key, rest)| (key, Some(rest)));
+                let Some(value) = summary.and_then(|summary| summary.value(key)) else { return String::new() };
+                let found = rest.map_or(Some(Cow::Borrowed(&value)), |rest| at_path(&value, rest));
+                found.map(text_of).unwrap_or_default()
+            }
             Origin::Column { name, reduction } => {
                 columns.reduced(name, reduction).map(|value| format!("{value:?}")).unwrap_or_default()
             }
@@ -192,8 +199,7 @@ fn time_of(reader: &mut Reader<'_>, path: &str, text: &str, value: &Node<'_, '_>
 
 /// The value at `energy.initial`, `peaks.0.phi` or `peaks.-1.phi`, the last of an array; `peaks.len`
 /// is the length of an array.
-fn at_path<'v>(value: &'v Value, path: &str) -> Option<std::borrow::Cow<'v, Value>> {
-    use std::borrow::Cow;
+fn at_path<'v>(value: &'v Value, path: &str) -> Option<Cow<'v, Value>> {
     let mut now = value;
     for part in path.split('.') {
         now = match now {
@@ -209,7 +215,7 @@ fn at_path<'v>(value: &'v Value, path: &str) -> Option<std::borrow::Cow<'v, Valu
     Some(Cow::Borrowed(now))
 }
 
-fn text_of(value: std::borrow::Cow<'_, Value>) -> String {
+fn text_of(value: Cow<'_, Value>) -> String {
     match value.as_ref() {
         Value::Null => String::new(),
         Value::String(text) => quoted(text),

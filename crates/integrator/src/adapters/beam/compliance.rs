@@ -6,13 +6,13 @@
 //! for the dofs that contacts act on are solved for once per factor, and combined
 //! ([`WBackend::CachedColumns`]).
 
-use super::matrix_weights;
+use super::{SharedFactors, matrix_weights};
 use crate::small::{add_outer, add_scaled};
 use crate::subsystem::{couple_by_solving, respond_by_solving};
 use crate::{Compliance, Coupling, FactorError, PartRows, Vector, Weights};
 use nalgebra::Matrix2;
 use std::sync::Arc;
-use teeter_beam::{Backend, Beam, Factor};
+use teeter_beam::{Backend, Beam, CholeskyError, Factor};
 
 /// How W of a beam is applied to contacts. The results differ by rounding only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -57,7 +57,10 @@ const RESPONSES: usize = 8;
 pub(super) struct BeamCompliance {
     beam: Arc<Beam>,
     weights: Weights,
-    factor: Factor,
+    /// Its own, or one that others have as well and that nobody changes.
+    factor: Arc<Factor>,
+    backend: Backend,
+    shared: Option<Arc<SharedFactors>>,
     memory: Memory,
 }
 
@@ -67,9 +70,20 @@ enum Memory {
 }
 
 impl BeamCompliance {
-    pub(super) fn new(beam: &Arc<Beam>, w: Weights, backend: WBackend) -> Result<Self, FactorError> {
+    pub(super) fn new(
+        beam: &Arc<Beam>,
+        w: Weights,
+        backend: WBackend,
+        shared: Option<&Arc<SharedFactors>>,
+    ) -> Result<Self, FactorError> {
         let kind = if backend == WBackend::Sparse { Backend::Sparse } else { Backend::Banded };
-        let factor = beam.factor_with(matrix_weights(w), kind).map_err(|error| refusal(w, &error))?;
+        // The factor of a stretched beam follows the coordinates of its model.
+        let shared = shared.filter(|_| !beam.is_stretched());
+        let found = shared.map_or(Ok(None), |shared| shared.of(w, kind)).map_err(|error| refusal(w, &error))?;
+        let factor = match found {
+            Some(factor) => factor,
+            None => Arc::new(beam.factor_with(matrix_weights(w), kind).map_err(|error| refusal(w, &error))?),
+        };
         let dofs = beam.dofs();
         let memory = match backend {
             // The columns of a stretched beam change in every step.
@@ -77,7 +91,25 @@ impl BeamCompliance {
             WBackend::CachedColumns => Memory::Columns(Columns::new(dofs, dofs)),
             WBackend::Auto | WBackend::Banded | WBackend::Sparse => Memory::Responses(Responses::new(dofs)),
         };
-        Ok(Self { beam: Arc::clone(beam), weights: w, factor, memory })
+        Ok(Self { beam: Arc::clone(beam), weights: w, factor, backend: kind, shared: shared.cloned(), memory })
+    }
+
+    /// Takes the factor of other weights: one that is shared, or its own in the same memory.
+    fn take(&mut self, w: Weights) -> Result<(), CholeskyError> {
+        let found = self.shared.as_ref().map_or(Ok(None), |shared| shared.of(w, self.backend))?;
+        if let Some(factor) = found {
+            self.factor = factor;
+        } else if let Some(own) = Arc::get_mut(&mut self.factor) {
+            self.beam.refactor(matrix_weights(w), own)?;
+        } else {
+            self.factor = Arc::new(self.beam.factor_with(matrix_weights(w), self.backend)?);
+        }
+        Ok(())
+    }
+
+    /// Its own factor, which follows the coordinates; only that of a stretched beam does, and isn't shared.
+    fn own(&mut self) -> Option<(&Beam, &mut Factor)> {
+        Some((&self.beam, Arc::get_mut(&mut self.factor)?))
     }
 }
 
@@ -105,7 +137,7 @@ impl Compliance<2> for BeamCompliance {
         if let Memory::Columns(columns) = &mut self.memory {
             columns.forget();
         }
-        self.beam.refactor(matrix_weights(w), &mut self.factor).map_err(|error| refusal(w, &error))?;
+        self.take(w).map_err(|error| refusal(w, &error))?;
         self.weights = w;
         Ok(())
     }
@@ -114,7 +146,9 @@ impl Compliance<2> for BeamCompliance {
         if let Memory::Columns(columns) = &mut self.memory {
             columns.forget();
         }
-        self.beam.follow(&q[..self.beam.dofs()], &mut self.factor);
+        if let Some((beam, factor)) = self.own() {
+            beam.follow(&q[..beam.dofs()], factor);
+        }
     }
 
     fn stretch(&mut self, tension: f64, weight: f64, g: &[f64]) {
@@ -122,15 +156,18 @@ impl Compliance<2> for BeamCompliance {
             columns.forget();
         }
         // A factor that could not be made gives NaN, which ends the step as diverged.
-        let _ = self.beam.refactor_stretched(tension, weight, &g[..self.beam.dofs()], &mut self.factor);
+        if let Some((beam, factor)) = self.own() {
+            let _ = beam.refactor_stretched(tension, weight, &g[..beam.dofs()], factor);
+        }
     }
 
     fn take_tangent(&mut self, q: &[f64]) -> Result<(), FactorError> {
         if let Memory::Columns(columns) = &mut self.memory {
             columns.forget();
         }
-        let tangent = self.beam.refactor_tangent(&q[..self.beam.dofs()], &mut self.factor);
-        tangent.map_err(|error| refusal(self.weights, &error))
+        let weights = self.weights;
+        let Some((beam, factor)) = self.own() else { return Ok(()) };
+        beam.refactor_tangent(&q[..beam.dofs()], factor).map_err(|error| refusal(weights, &error))
     }
 
     fn solve(&mut self, f: &mut [f64]) {
@@ -388,7 +425,7 @@ mod tests {
         let section = Section::rectangle(0.03, 0.0015, 69e9, 2700.0).unwrap();
         let supports = [Support::Clamped, Support::Free];
         let beam = Arc::new(Beam::new(BeamSpec::new(0.36, 50, section).supported(supports)).unwrap());
-        let compliance = BeamCompliance::new(&beam, WEIGHTS, WBackend::CachedColumns).unwrap();
+        let compliance = BeamCompliance::new(&beam, WEIGHTS, WBackend::CachedColumns, None).unwrap();
         (beam, compliance)
     }
 
@@ -435,7 +472,7 @@ mod tests {
         let before = answer(&mut used, &[10]);
         used.refactor(half, &[]).unwrap();
         assert_eq!(kept(&used), 0);
-        let mut fresh = BeamCompliance::new(&beam, half, WBackend::CachedColumns).unwrap();
+        let mut fresh = BeamCompliance::new(&beam, half, WBackend::CachedColumns, None).unwrap();
         let after = answer(&mut used, &[10]);
         assert!(after == answer(&mut fresh, &[10]) && after != before);
     }
