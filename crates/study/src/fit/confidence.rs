@@ -175,7 +175,7 @@ pub(super) fn of(
     };
     let ways: Vec<Vec<f64>> = (0..keys.len()).map(way).collect();
     let errors: Vec<f64> = (0..keys.len()).map(error).collect();
-    let (as_good, better) = as_good(objective, fitted, &ways, &errors, variance, threads, evaluations);
+    let Beside { as_good, better } = look_beside(objective, fitted, &ways, &errors, variance, threads, evaluations);
     let estimates = names
         .into_iter()
         .enumerate()
@@ -216,12 +216,19 @@ fn beside(fitted: &Trial, k: usize, side: f64, way: &[f64], error: f64) -> Vec<V
     places
 }
 
-/// The values of each key that fit as well as the fitted one, on both sides of it, if they go beyond what its standard
-/// error says; and the best of those beside it, if they are better than the fitted ones.
+/// What is beside the fitted values.
+struct Beside {
+    /// Of each key: the values that fit as well as the fitted one, on both sides of it, if they go beyond what its standard error says.
+    as_good: Vec<Option<(f64, f64)>>,
+    /// The best values of all keys, if they are better than the fitted ones.
+    better: Option<Vec<f64>>,
+}
+
+/// Looks what is beside the fitted values.
 ///
 /// The motion is a rough function of the keys: each impact is shifted by the time step, and whole impacts come and go. At
 /// the bottom of a wide valley the differences then see its stones, and the standard error is far too small.
-fn as_good(
+fn look_beside(
     objective: &Objective<'_>,
     fitted: &Trial,
     ways: &[Vec<f64>],
@@ -229,7 +236,7 @@ fn as_good(
     variance: f64,
     threads: usize,
     evaluations: &mut Vec<Evaluation>,
-) -> (Vec<Option<(f64, f64)>>, Option<Vec<f64>>) {
+) -> Beside {
     let keys = objective.keys.len();
     let places: Vec<(usize, Vec<f64>)> = (0..keys)
         .flat_map(|k| [-1.0, 1.0].map(|side| (k, side)))
@@ -272,7 +279,7 @@ fn as_good(
         let is_wider = fitted.at[k] - low > limit || high - fitted.at[k] > limit;
         is_wider.then(|| (objective.keys[k].at(low), objective.keys[k].at(high)))
     };
-    ((0..keys).map(of).collect(), better)
+    Beside { as_good: (0..keys).map(of).collect(), better }
 }
 
 /// The correlation of each value with the next.
