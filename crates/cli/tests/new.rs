@@ -104,7 +104,7 @@ fn shells_and_man_know_every_command() {
 }
 
 /// Waits for a condition.
-fn within(limit: Duration, condition: impl Fn() -> bool) -> bool {
+fn within(limit: Duration, mut condition: impl FnMut() -> bool) -> bool {
     let begin = Instant::now();
     while begin.elapsed() < limit {
         if condition() {
