@@ -330,7 +330,7 @@ mod tests {
             assert_eq!((record.dt(), record.accelerations()), (0.5, &[1.0, -2.0, 3.0][..]), "{table}");
         }
         for heading in ["acc (g)", "acc [gn]"] {
-            let record = Record::read_with_step(&format!("{heading}\n1\n-2\n"), "R", Some(0.02)).unwrap();
+            let record = Record::read_with_step(format!("{heading}\n1\n-2\n"), "R", Some(0.02)).unwrap();
             assert_eq!((record.dt(), record.accelerations()), (0.02, &[STANDARD_GRAVITY, -2.0 * STANDARD_GRAVITY][..]));
         }
     }

@@ -59,10 +59,11 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.rigid.extend(model.parts().iter().map(knows));
     }
 
-    /// A speed that no point of a rigid body exceeds at the end of the attempt, m/s.
+    /// A speed that no point of a rigid body exceeds at the end of the attempt, m/s, but for ground that turns: what stands on that moves with it.
     fn fastest(&self, model: &Model<D>) -> f64 {
         let rigid = model.parts().iter().zip(&self.rigid).filter(|(_, rigid)| **rigid);
-        rigid.map(|(part, _)| part.system.fastest(&self.step.v_end()[part.v.clone()])).fold(0.0, f64::max)
+        let speeds = rigid.map(|(part, _)| part.system.fastest(&self.step.v_end()[part.v.clone()]));
+        speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max)
     }
 
     /// Whether both bodies of a contact are rigid.
