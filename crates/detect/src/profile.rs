@@ -81,7 +81,8 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// What lies along a piece beside a crest still touches the crest, up to this angle, rad.
 const ALONG: f64 = 1e-9;
 
-/// A body that lies along a piece has no corner that points into it, beyond this angle, rad: more than a base turns when it sinks in.
+/// A corner may strike a piece although the corner beside it reaches further into the ground, if the side between them slopes by less than
+/// this against the piece, rad: more than a base turns as it sinks in.
 const POINTING: f64 = 0.02;
 
 impl Profile {
@@ -242,8 +243,8 @@ pub(crate) fn located(
 impl Over<'_> {
     /// Hands the pieces to `each` that a corner at `place`, `below` the ground by so much (m), can
     /// touch: those that it is over; of those that it is in the nearest, and what meets that in a
-    /// valley. What it is in without pointing there is touched by a side, at a crest: a base that has sunk into one flank of a crest a
-    /// little, and slides down, passes the crest with a corner that is nearer to the other flank, from inside.
+    /// valley. A piece that it doesn't point into doesn't count: a base that has sunk a little into one flank of a crest, and slides down,
+    /// passes the crest with a corner that is inside the ground and nearer to the other flank. There the crest touches a side.
     fn pieces_of(&self, corner: usize, place: &Vector<2>, reach: f64, below: f64, mut each: impl FnMut(usize)) {
         let profile = self.profile;
         let pieces = profile.pieces_between(place.x - reach, place.x + reach);
@@ -273,7 +274,7 @@ impl Over<'_> {
         }
     }
 
-    /// Whether no corner beside this one is further in a piece's solid, as where the corner strikes it.
+    /// Whether neither of the corners beside this one reaches further into the ground below a piece.
     fn points_into(&self, corner: usize, piece: usize) -> bool {
         let Outline { corners, frame, .. } = self.outline;
         let inward = -frame.unturned(&self.ground.turned(&self.profile.pieces[piece].normal));
@@ -310,7 +311,7 @@ impl Over<'_> {
                 let on = |side: usize| self.crest_on_side(joint, side).filter(|touch| touch.room >= 0.0);
                 let n = self.outline.corners.len();
                 let beside = || [side + 1, side + n - 1].into_iter().filter_map(|beside| on(beside % n));
-                // Deeper in than it is from the corner, it is nearer to the side beside the one that lies on it.
+                // A crest that is further inside than it is from a corner is nearer to the side that doesn't lie on it.
                 let inside = near.distance < *radius;
                 return on(side).or_else(|| beside().filter(|_| inside).max_by(|a, b| a.gap.total_cmp(&b.gap)));
             }

@@ -20,7 +20,7 @@ use crate::{
 pub(crate) use guard::{Guard, Guarded};
 use teeter_contact::Outcome;
 use teeter_detect::{Candidate, Candidates, ContactId};
-use together::Landing;
+use together::Landings;
 
 /// Up to so many contacts an attempt starts from the impulses of the step before; with more, from
 /// those of the attempt before. Stacks of fewer blocks take up to a quarter more iterations with
@@ -62,8 +62,8 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     /// What was found of the new ones.
     found: Candidates<D>,
     found_rooms: Vec<f64>,
-    /// What other contacts land with; memory.
-    landings: Vec<Landing>,
+    /// Of each body: what lands together.
+    landings: Landings,
     /// Of each part of the model, whether it is known how fast its points are: not of a beam.
     rigid: Vec<bool>,
     /// The impulses of the attempt before, of many contacts: where the solver starts.
@@ -117,7 +117,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             new: Vec::new(),
             found: Vec::new(),
             found_rooms: Vec::new(),
-            landings: Vec::new(),
+            landings: Landings::default(),
             rigid: Vec::new(),
             tried: WarmStart::default(),
             of_step: 1.0,
@@ -155,7 +155,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         for ids in [&mut self.closed, &mut self.looked, &mut self.new] {
             ids.reserve(contacts);
         }
-        self.landings.reserve(contacts);
+        self.landings.reserve(model);
         self.resting_shift.reserve(contacts);
         self.slides.reserve(contacts);
         self.guarded.reserve(contacts);

@@ -533,7 +533,17 @@ impl<const D: usize> Model<D> {
 
     /// A speed that no point of any body exceeds at velocities `v`, m/s; infinity where none is known.
     pub(crate) fn fastest(&self, v: &[f64]) -> f64 {
-        self.parts.iter().map(|part| part.system.fastest(&v[part.v.clone()])).fold(0.0, f64::max)
+        self.speeds(v).fold(0.0, f64::max)
+    }
+
+    /// Of each part a speed that no point of it exceeds at velocities `v`, m/s; infinity where none is known.
+    pub(crate) fn speeds(&self, v: &[f64]) -> impl Iterator<Item = f64> {
+        self.parts.iter().map(|part| part.system.fastest(&v[part.v.clone()]))
+    }
+
+    /// How many bodies there are; their numbers are below it.
+    pub(crate) fn body_count(&self) -> usize {
+        self.bodies.len()
     }
 
     /// Whether a body can move, and not only as prescribed.

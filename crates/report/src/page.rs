@@ -44,7 +44,7 @@ pub use rocking::{HalfCycle, half_cycles};
 pub use teeter_plot::escaped;
 pub(crate) use vtk::is_vtk_picture;
 pub use vtk::{VTK_SERIES, VtkRecorder};
-pub use widths::for_any_width;
+pub use widths::{SIDE_BY_SIDE, for_any_width};
 
 /// A number with so many significant digits: what the page shows needs no more, and a shorter page loads faster.
 fn rounded(x: f64, digits: usize) -> f64 {

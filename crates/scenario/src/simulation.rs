@@ -384,9 +384,9 @@ fn beam_models(scene: &Scene, shared: Option<&SharedParts>) -> Result<Vec<BeamMo
             Some(shared) => BeamModel::of_shared(shared.beam(of)?),
             None => BeamModel::new(of)?,
         };
-        // Of a plain beam that stands still there is nothing to displace, and nothing to refuse.
-        let is_plain = of.reduction.is_none() && scene.loads.iter().all(|load| load.beam != number);
-        if of.motion.is_given() || !is_plain {
+        // The supports of other beams stand still, and their loads and modes can't be refused, as they have none.
+        let has_loads = scene.loads.iter().any(|load| load.beam == number);
+        if of.motion.is_given() || of.reduction.is_some() || has_loads {
             model.displaced = model.body(scene, number)?.displacements(0.0);
         }
         Ok(model)

@@ -166,8 +166,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
 
     /// A speed that no point of what isn't elastic exceeds, m/s.
     pub(super) fn fastest(&self, model: &Model<D>, v: &[f64]) -> f64 {
-        let parts = model.parts().iter().zip(&self.elastic).filter(|(_, elastic)| !**elastic);
-        parts.map(|(part, _)| part.system.fastest(&v[part.v.clone()])).fold(0.0, f64::max)
+        let speeds = model.speeds(v).zip(&self.elastic).filter(|(_, elastic)| !**elastic);
+        speeds.map(|(speed, _)| speed).fold(0.0, f64::max)
     }
 
     /// Whether one side of a contact is elastic: steps don't follow its vibrations, so that nothing is known of gaps

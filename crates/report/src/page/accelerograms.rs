@@ -1,7 +1,7 @@
 //! The records that prescribe motions: their figures, and their section of the page.
 
 use super::rounded;
-use super::widths::for_any_width;
+use super::widths::{SIDE_BY_SIDE, for_any_width};
 use crate::summary::RecordSummary;
 use std::fmt::Write;
 use std::sync::Arc;
@@ -173,14 +173,11 @@ pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary],
     }
     html.push_str("<div class=\"pictures\">\n");
     for figure in [Some(histories), spectra(records)].into_iter().flatten() {
-        let _ = writeln!(html, "<div>{}</div>", for_any_width(&figure.legend(Legend::Rows), WIDE));
+        let _ = writeln!(html, "<div>{}</div>", for_any_width(&figure.legend(Legend::Rows), SIDE_BY_SIDE));
     }
     html.push_str("</div></section>\n");
     html
 }
-
-/// Width of the figures on the page where there is room, mm.
-const WIDE: f64 = 120.0;
 
 #[cfg(test)]
 mod tests {

@@ -5,6 +5,9 @@ use teeter_plot::{Figure, Theme};
 /// Width of a figure in a narrow window, mm: about that of a telephone, so that its text is as large as the page's.
 const NARROW: f64 = 88.0;
 
+/// Width of a figure where there is room, of those that stand side by side on a page, mm.
+pub const SIDE_BY_SIDE: f64 = 120.0;
+
 /// A figure as HTML, in the colours of the page: `wide` mm wide, and once more for windows so narrow that its text would be too
 /// small to read there. The style of [`document`](super::document) shows one of the two.
 #[must_use]

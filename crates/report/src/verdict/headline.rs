@@ -129,7 +129,7 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
 /// That a block is still at the end, in words, of one that is not known to rest.
 fn still(of: &BodyVerdict) -> String {
     let since = of.still_from.map_or_else(String::new, time);
-    format!(" and is still since {since}, too short a time to tell whether it rests")
+    format!(" and has been still since {since}, too short a time to tell whether it rests")
 }
 
 /// How a block that rests does so, in words after "came to rest"; `None` of what has no sides.

@@ -234,8 +234,8 @@ impl Stance {
         [self.right.top, self.left.top]
     }
 
-    /// |φ|/α at an angle (rad) on ground with a slope (rad) against the level of gravity: the way from standing flat there to the point of no return, in parts; `None` where the
-    /// slope alone is past it.
+    /// |φ|/α at an angle (rad) on ground with a slope (rad) against the level of gravity: the way from standing flat there to the point of
+    /// no return, in parts; `None` where the slope alone is past it.
     pub(crate) fn part(&self, angle: f64, slope: f64) -> Option<f64> {
         let turned = angle - self.flat - slope;
         let edge = if turned > 0.0 { self.left } else { self.right };

@@ -25,11 +25,15 @@ pub(super) fn at_start(
     // Blocks are the model's first bodies.
     let of_body = |body: BodyId| node(body.0 as usize);
     let mut carried = vec![Vec::new(); fixed + 1];
+    let placed_on = |block: &Watched| {
+        block.on.map(|on| match on {
+            SupportingBody::Block(below) => node(below),
+            SupportingBody::Beam(_) | SupportingBody::Ground => fixed,
+        })
+    };
     for (number, block) in blocks.iter().enumerate() {
-        match block.on {
-            Some(SupportingBody::Block(below)) => carried[node(below)].push(number),
-            Some(SupportingBody::Beam(_) | SupportingBody::Ground) => carried[fixed].push(number),
-            None => {}
+        if let Some(below) = placed_on(block) {
+            carried[below].push(number);
         }
     }
     // More than a contact counts as closed at, and than the fall that as little energy takes as turns a block over.
@@ -42,11 +46,7 @@ pub(super) fn at_start(
         for (side, [upper, lower]) in [[a, b], [b, a]].into_iter().enumerate() {
             let block = blocks.get(upper).filter(|_| upper != fixed);
             // Known without a search for its stance, which takes long.
-            let is_placed_there = block.and_then(|block| block.on).is_some_and(|on| match on {
-                SupportingBody::Block(below) => node(below) == lower,
-                SupportingBody::Beam(_) | SupportingBody::Ground => lower == fixed,
-            });
-            if is_placed_there {
+            if block.and_then(placed_on) == Some(lower) {
                 continue;
             }
             if closed || block.is_some_and(|block| block.as_good_as_stands(candidate, side, layout, upper, state)) {

@@ -224,7 +224,7 @@ struct Beside {
     better: Option<Vec<f64>>,
 }
 
-/// Looks what is beside the fitted values.
+/// Evaluates values beside the fitted ones.
 ///
 /// The motion is a rough function of the keys: each impact is shifted by the time step, and whole impacts come and go. At
 /// the bottom of a wide valley the differences then see its stones, and the standard error is far too small.

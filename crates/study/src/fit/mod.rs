@@ -249,8 +249,8 @@ impl Fit {
     }
 }
 
-/// The confidence of the best trial. Where values beside it turn out to be better, these are improved and take its place: a rough function
-/// has many minima, and only who looks around finds that there is a deeper one.
+/// The confidence of the best trial. Where values beside it are better, these are improved and take its place: a rough function has many
+/// minima, and a deeper one may be near.
 fn confidence_of_best(
     objective: &Objective<'_>,
     best: &mut Vec<Trial>,

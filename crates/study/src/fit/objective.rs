@@ -6,7 +6,6 @@ use crate::measured::{Channel, MeasuredMotion, Sign, local_fit};
 use crate::{Failure, Setting, StudyScene};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use teeter_scenario::simulation::Simulation;
 
 /// Rows of the window by which the noise of the samples is estimated.
 const NOISE_WINDOW: usize = 7;
@@ -76,7 +75,7 @@ impl<'a> Objective<'a> {
         }
         let scene = self.source.scene(setting)?;
         let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
-        let mut simulation = Simulation::new(&scene).map_err(|error| refused(&error))?;
+        let mut simulation = self.source.simulation(&scene).map_err(|error| refused(&error))?;
         simulation.cancelled_by(Arc::clone(self.cancel));
         let place = simulation.layout.blocks.get(self.block).ok_or_else(|| refused(&"the block isn't in the scene"))?;
         // A quarter of the time between rows: what lies between is a cubic.

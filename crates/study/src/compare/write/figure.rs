@@ -4,12 +4,10 @@
 use crate::compare::{ChannelComparison, Comparison};
 use crate::measured::Channel;
 use teeter_plot::{Axis, AxisError, Figure, Legend, Mark, Panel, Series};
-use teeter_report::for_any_width;
+use teeter_report::{SIDE_BY_SIDE, for_any_width};
 
 /// Most marks in a figure: beyond, they hide each other, and the lines.
 const MOST_MARKS: usize = 150;
-/// Width of the figures on the page where there is room, mm.
-const ON_PAGE: f64 = 120.0;
 /// Points of a line.
 const LINE_POINTS: usize = 4000;
 /// The number of a dashed blue line: the motion before a fit is told from the fitted one without colours, too.
@@ -35,7 +33,7 @@ pub(crate) fn motion_figures(
         let figure = figure(comparison, before, found.channel)?;
         let svg = match width {
             Some(width) => figure.width_mm(width).to_svg(),
-            None => for_any_width(&figure, ON_PAGE),
+            None => for_any_width(&figure, SIDE_BY_SIDE),
         };
         Ok((format!("{}.svg", found.channel.word()), svg))
     });

@@ -23,11 +23,15 @@ const CALLED: [(&str, &str); 5] = [
     ("end", "End of the run"),
 ];
 
-/// Values of the summary, with their units; those of any record follow the number of the record.
-const OF_SUMMARY: [(&str, &str); 6] = [
+/// Values of the summary, with their units.
+const OF_SUMMARY: [(&str, &str); 3] = [
     ("max_phi_over_alpha", "Largest |φ|/α"),
     ("overturned_at", "Time of overturning (s)"),
     ("impact_count", "Number of impacts"),
+];
+
+/// Values of a record in the summary, after its number.
+const OF_RECORDS: [(&str, &str); 3] = [
     ("peak_acceleration", "Peak acceleration of the record (m/s²)"),
     ("peak_velocity", "Peak velocity of the record (m/s)"),
     ("arias_intensity", "Arias intensity of the record (m/s)"),
@@ -98,12 +102,12 @@ fn of_key(key: &str) -> String {
 
 fn of_output(output: &Output) -> Option<String> {
     if let Some(path) = output.summary_path() {
-        let place = match path.split('.').collect::<Vec<_>>().as_slice() {
-            ["records", _, last] => *last,
-            [only] if !OF_SUMMARY[3..].iter().any(|(key, _)| key == only) => *only,
-            _ => return None,
+        let known = match path.split('.').collect::<Vec<_>>().as_slice() {
+            ["records", _, last] => named(&OF_RECORDS, last),
+            [only] => named(&OF_SUMMARY, only),
+            _ => None,
         };
-        return named(&OF_SUMMARY, place).map(str::to_owned);
+        return known.map(str::to_owned);
     }
     if let Some(period) = output.period() {
         return Some(format!("Spectral acceleration at T = {period} s (m/s²)"));

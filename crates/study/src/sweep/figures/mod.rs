@@ -18,7 +18,7 @@ pub(crate) use overturning::Overturning;
 pub use page::study_page;
 pub use table::{StudyTable, TableError};
 use teeter_plot::{AxisError, Figure};
-use teeter_report::for_any_width;
+use teeter_report::{SIDE_BY_SIDE, for_any_width};
 use toml::de::DeTable;
 
 /// What is to be made of the table of a study.
@@ -125,9 +125,6 @@ fn counted(cases: usize) -> String {
     if cases == 1 { "1 case".to_owned() } else { format!("{cases} cases") }
 }
 
-/// Width of figures on the page where there is room, mm.
-const ON_PAGE: f64 = 120.0;
-
 /// Room below and above axes of shares, so that curves at 0 and 1 aren't hidden by the frame.
 const SHARE_ROOM: f64 = 0.03;
 
@@ -164,7 +161,7 @@ impl StudyFigure {
     /// As HTML for a page.
     fn on_page(&self) -> String {
         let all = std::iter::once(&self.figure).chain(self.more.iter().map(|(_, figure)| figure));
-        all.map(|figure| format!("<div>{}</div>\n", for_any_width(figure, ON_PAGE))).collect()
+        all.map(|figure| format!("<div>{}</div>\n", for_any_width(figure, SIDE_BY_SIDE))).collect()
     }
 }
 
