@@ -546,6 +546,9 @@ fn what_tumbles_through_the_air_does_not_overturn() {
     // From when it has settled φ/α is told, and by itself it stays below 1 then; how far it flew is no slide.
     assert!(of["max_phi_over_alpha"].as_f64().is_some_and(|part| part < 1.0), "{of}");
     assert!(of["slid"].as_f64().is_some_and(|slid| slid.abs() < 1e-3), "{of}");
+    let turned = ran.column("b.phi").last().unwrap().abs().to_degrees();
+    let headline = ran.summary["headline"].as_str().unwrap();
+    assert!(headline.contains(&format!("tumbled by {turned:.0}°, then came to rest")), "{headline}");
 
     // One that never lands has no fate but that it moves.
     let ran = from_the_air("aloft", &thrown.replace("1 m/s", "40 m/s"), "[ground]\n");

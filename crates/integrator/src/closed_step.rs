@@ -5,6 +5,7 @@
 //! Its formulas, and why no contact gives energy, are at
 //! [`MoreauJeanClosed`](crate::MoreauJeanClosed).
 
+mod grazing;
 mod guard;
 mod together;
 
@@ -20,7 +21,6 @@ use crate::{
 pub(crate) use guard::{Guard, Guarded};
 use teeter_contact::Outcome;
 use teeter_detect::{Candidate, Candidates, ContactId};
-use together::Landings;
 
 /// Up to so many contacts an attempt starts from the impulses of the step before; with more, from
 /// those of the attempt before. Stacks of fewer blocks take up to a quarter more iterations with
@@ -62,8 +62,12 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     /// What was found of the new ones.
     found: Candidates<D>,
     found_rooms: Vec<f64>,
-    /// Of each body: what lands together.
-    landings: Landings,
+    /// New contacts that may graze, in order of identity, and of how deep a body, m.
+    grazing: Vec<(ContactId, f64)>,
+    /// Of each body: how deep it is in others, m.
+    depths: Vec<f64>,
+    /// Of each body: what would land within this time lands together with a contact that has just been closed, s; 0 where there is none.
+    landings: Vec<f64>,
     /// Of each part of the model, whether it is known how fast its points are: not of a beam.
     rigid: Vec<bool>,
     /// The impulses of the attempt before, of many contacts: where the solver starts.
@@ -117,7 +121,9 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             new: Vec::new(),
             found: Vec::new(),
             found_rooms: Vec::new(),
-            landings: Landings::default(),
+            grazing: Vec::new(),
+            depths: Vec::new(),
+            landings: Vec::new(),
             rigid: Vec::new(),
             tried: WarmStart::default(),
             of_step: 1.0,
@@ -152,10 +158,13 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.stage.reserve(model);
         self.row.reserve(1, model.size().row, model.parts().len());
         self.found_rooms.reserve(contacts);
+        self.grazing.reserve(contacts);
         for ids in [&mut self.closed, &mut self.looked, &mut self.new] {
             ids.reserve(contacts);
         }
-        self.landings.reserve(model);
+        for of_bodies in [&mut self.depths, &mut self.landings] {
+            of_bodies.reserve(model.body_count().saturating_sub(of_bodies.len()));
+        }
         self.resting_shift.reserve(contacts);
         self.slides.reserve(contacts);
         self.guarded.reserve(contacts);
@@ -477,6 +486,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         if self.new.is_empty() {
             return Ok(false);
         }
+        self.leave_out_what_grazes(model, work)?;
         work.locate(model, &state.q, &self.new, &mut self.start)?;
         for id in &self.new {
             let gap = |candidates: &[Candidate<D>]| find(candidates, *id).map_or(0.0, |candidate| candidate.gap);

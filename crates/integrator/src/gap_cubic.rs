@@ -36,8 +36,17 @@ impl GapCubic {
         0.5 * (low + high)
     }
 
-    /// Where it is lowest on the way, and how low, m; for one that may fall at first and rises in the end.
-    pub(crate) fn lowest(&self) -> (f64, f64) {
+    /// Where it may be lowest on the way, and how low, m, for one that may fall at first and rises in the end: the cubic's lowest point, and
+    /// where the tangents at both ends meet. A gap to something round, which is passed from one side to the other, is no cubic.
+    pub(crate) fn lows(&self) -> [(f64, f64); 2] {
+        let [a, b] = self.ends;
+        let (da, db) = (self.slope, 2.0 * self.c2 + 3.0 * self.c3 + self.slope);
+        let s = (b - a - db) / (da - db);
+        let meet = if da < 0.0 && db > 0.0 { (s, a + da * s) } else { (0.5, f64::INFINITY) };
+        [self.lowest(), meet]
+    }
+
+    fn lowest(&self) -> (f64, f64) {
         let Self { slope: da, c2, c3, .. } = *self;
         let root = (c2 * c2 - 3.0 * c3 * da).max(0.0).sqrt();
         // 3 c3 s² + 2 c2 s + da = 0, without a difference of like numbers.

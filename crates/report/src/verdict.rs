@@ -26,6 +26,9 @@ pub(crate) const STILL: f64 = 1e-3;
 /// of the rest.
 pub(crate) const FALLEN: f64 = 0.9;
 
+/// A block that began in flight tumbled if it has turned by this angle, rad.
+const TUMBLED: f64 = 0.75 * std::f64::consts::PI;
+
 /// A block slid, in a word, if it did by this part of its base.
 const SLID: f64 = 0.01;
 
@@ -113,6 +116,9 @@ pub struct BodyVerdict {
     /// Of a block that rests, but lies on none of its sides: its angle at the end, rad.
     #[serde(skip)]
     pub(crate) leans_at: Option<f64>,
+    /// Of a block that began in flight, turned over and settled: by how much it has turned at the end, rad.
+    #[serde(skip)]
+    pub(crate) tumbled: Option<f64>,
 }
 
 /// What is known of a block so far.
@@ -467,6 +473,10 @@ impl Seen {
             .and(watched.outline.as_ref())
             .and_then(|outline| Side::below(block, outline, self.angle - watched.slope(&state.q)));
         let leans = rests.is_some() && lies_on.is_none() && watched.outline.is_some();
+        let tumbled = match block.placement {
+            Placement::Free { angle, .. } => self.began.map(|_| self.angle - angle),
+            Placement::On { .. } => None,
+        };
         BodyVerdict {
             body: layout.blocks[number].name.clone(),
             what,
@@ -481,6 +491,7 @@ impl Seen {
             last_peak: peak.filter(|_| what == Fate::Rocks).map(|peak| peak.phi),
             still_from: self.still.filter(|_| rests.is_none()),
             stands_from: self.stands_from,
+            tumbled: tumbled.filter(|turn| turn.abs() >= TUMBLED && what != Fate::Overturned),
             on_its_way: rocking
                 .filter(|monitor| what == Fate::Rocks && monitor.count() == 0)
                 .map(|_| layout.tilt(number, &state.q)),

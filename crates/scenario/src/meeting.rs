@@ -1,5 +1,7 @@
 //! Overlaps of bodies where the model has no contact: they are reported, not prevented.
 
+mod passing;
+
 use crate::ground_profile;
 use crate::overlap::{Outline, PlacedOutline, Sweep, each_overlap};
 use crate::scene::{BlockScene, Crowd, Scene, SupportingBody};
@@ -128,66 +130,6 @@ impl Shapes {
             boxes: Vec::with_capacity(scene.blocks.len()),
             sweep: Sweep::with_capacity(scene.blocks.len()),
         }
-    }
-
-    /// Two blocks with a contact between them that moved past each other in a step of `dt` (s) that
-    /// ended with these coordinates and velocities, by more than half the sum of their shorter
-    /// sides, so that the contact may not have been seen; and by how much, m.
-    #[must_use]
-    pub fn passing(&self, layout: &Layout, q: &[f64], v: &[f64], dt: f64) -> Option<(usize, usize, f64)> {
-        let passes = |a: usize, b: usize| {
-            let (first, second) = (&layout.blocks[a], &layout.blocks[b]);
-            let between = |k: usize, of: &[f64]| of[first.range.start + k] - of[second.range.start + k];
-            let (x, y) = (between(0, q), between(1, q));
-            let (dx, dy) = (dt * between(0, v), dt * between(1, v));
-            let far = dx.hypot(dy);
-            if far <= 0.5 * (first.side + second.side) {
-                return None;
-            }
-            // Where they were nearest on their way here.
-            let back = ((x * dx + y * dy) / (far * far)).clamp(0.0, 1.0);
-            let nearest = (x - back * dx).hypot(y - back * dy);
-            (nearest < first.reach + second.reach).then_some((a, b, far))
-        };
-        if let Some(found) = self.blocks.iter().find_map(|&(a, b)| passes(a, b)) {
-            return Some(found);
-        }
-        let crowd = self.crowd.as_ref()?;
-        // Of two that come so far past each other one comes at least half as far.
-        let is_fast = |k: &usize| {
-            let at = layout.blocks[*k].range.start;
-            dt * v[at].hypot(v[at + 1]) > 0.5 * self.shortest
-        };
-        let is_fast: Vec<bool> = (0..layout.blocks.len()).map(|k| is_fast(&k)).collect();
-        if !is_fast.contains(&true) {
-            return None;
-        }
-        // From where each was at the start of the step to where it is, along x: only those whose
-        // reaches overlap there can have passed each other.
-        let mut spans: Vec<(f64, f64, usize)> = Vec::with_capacity(is_fast.len());
-        for (k, place) in layout.blocks.iter().enumerate() {
-            let (now, back) = (q[place.range.start], dt * v[place.range.start]);
-            let (low, high) = (now.min(now - back) - place.reach, now.max(now - back) + place.reach);
-            if low.is_nan() || high.is_nan() {
-                return None;
-            }
-            spans.push((low, high, k));
-        }
-        spans.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        // Of several the one is told that comes first by a fast block's number.
-        let mut first: Option<([usize; 2], (usize, usize, f64))> = None;
-        for (at, &(_, high, a)) in spans.iter().enumerate() {
-            for &(_, _, b) in spans[at + 1..].iter().take_while(|(low, ..)| *low <= high) {
-                let orders = [[a, b], [b, a]];
-                let order = orders.into_iter().filter(|[fast, _]| is_fast[*fast]).min();
-                let Some(order) = order.filter(|order| first.is_none_or(|(least, _)| *order < least)) else { continue };
-                let (low, high) = (a.min(b), a.max(b));
-                if let Some(found) = passes(low, high).filter(|_| crowd.contact_of(low, high).is_some()) {
-                    first = Some((order, found));
-                }
-            }
-        }
-        first.map(|(_, found)| found)
     }
 
     /// Passes each overlap at coordinates `q` of the whole model to `each`, with its depth, m.

@@ -8,30 +8,6 @@ use teeter_detect::Candidate;
 /// A contact is closed early by at most so many steps.
 const STEPS: f64 = 10.0;
 
-/// By the numbers of bodies; of bodies that don't move, or only as prescribed, nothing is entered.
-#[derive(Debug, Default)]
-pub(super) struct Landings {
-    /// The least gap of a closed contact, m; 0 where all are above their surfaces.
-    lowest: Vec<f64>,
-    /// What would land within this time lands together with a contact that has just been closed, s; 0 where there is none.
-    times: Vec<f64>,
-}
-
-impl Landings {
-    pub(super) fn reserve<const D: usize>(&mut self, model: &Model<D>) {
-        for of_bodies in [&mut self.lowest, &mut self.times] {
-            of_bodies.reserve(model.body_count().saturating_sub(of_bodies.len()));
-        }
-    }
-
-    fn restart<const D: usize>(&mut self, model: &Model<D>) {
-        for of_bodies in [&mut self.lowest, &mut self.times] {
-            of_bodies.clear();
-            of_bodies.resize(model.body_count(), 0.0);
-        }
-    }
-}
-
 impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
     /// Closes the open contacts that would land together with those that have just been closed, if closed contacts of the same bodies had
     /// not sunk in.
@@ -54,7 +30,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         work.detect(model, self.step.q_end(), reach)?;
         self.new.clear();
         for candidate in work.candidates.iter().filter(|candidate| candidate.gap > -self.gap_tolerance) {
-            let time = moving(model, candidate).map(|body| self.landings.times[body]).fold(0.0, f64::max);
+            let time = moving(model, candidate).map(|body| self.landings[body]).fold(0.0, f64::max);
             if time == 0.0 || self.closed.binary_search(&candidate.id).is_ok() || !self.is_rigid(model, candidate) {
                 continue;
             }
@@ -93,29 +69,28 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
     /// Finds which of the contacts that have just been closed are less deep than contacts of the same bodies that were closed before, and
     /// within what time others would land together with them; returns the longest time, s, 0 if there are none.
     fn find_landings(&mut self, model: &Model<D>, h: f64, work: &Workspace<D>) -> Result<f64, Mismatch> {
-        self.landings.restart(model);
+        self.landings.clear();
+        self.landings.resize(model.body_count(), 0.0);
         // What was closed before has been looked at.
-        for sunk in work.candidates.iter().filter(|candidate| self.looked.binary_search(&candidate.id).is_ok()) {
-            for body in moving(model, sunk) {
-                self.landings.lowest[body] = self.landings.lowest[body].min(sunk.gap);
-            }
-        }
+        let looked = std::mem::take(&mut self.looked);
+        self.find_depths(model, &work.candidates, |id| looked.binary_search(&id).is_ok());
+        self.looked = looked;
         let mut longest = 0.0_f64;
         for candidate in &work.candidates {
             if self.new.binary_search(&candidate.id).is_err() || !self.is_rigid(model, candidate) {
                 continue;
             }
-            let lowest = moving(model, candidate).map(|body| self.landings.lowest[body]).fold(candidate.gap, f64::min);
-            if lowest == candidate.gap {
+            let depth = moving(model, candidate).map(|body| self.depths[body]).fold(-candidate.gap, f64::max);
+            if depth == -candidate.gap {
                 continue;
             }
             self.row.clear();
             self.row.push(model, self.step.q_end(), candidate)?;
             let rate = self.row.velocity(0, self.step.v_end())[0];
-            let time = (candidate.gap - lowest) / -rate;
+            let time = (candidate.gap + depth) / -rate;
             if leaves(-rate, || self.row.speed(0, self.step.v_end())) && time <= STEPS * h {
                 for body in moving(model, candidate) {
-                    self.landings.times[body] = self.landings.times[body].max(time);
+                    self.landings[body] = self.landings[body].max(time);
                 }
                 longest = longest.max(time);
             }
@@ -125,7 +100,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
 }
 
 /// The numbers of the bodies of a contact that move, and not only as prescribed.
-fn moving<const D: usize>(model: &Model<D>, contact: &Candidate<D>) -> impl Iterator<Item = usize> {
+pub(super) fn moving<const D: usize>(model: &Model<D>, contact: &Candidate<D>) -> impl Iterator<Item = usize> {
     let bodies = contact.sides.map(|side| side.body).into_iter();
     bodies.filter(|body| model.moves(*body)).map(|body| body.0 as usize)
 }

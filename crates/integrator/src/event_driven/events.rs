@@ -344,8 +344,9 @@ impl EventDriven {
             if end_rate <= 0.0 {
                 continue;
             }
-            let (s, low) = GapCubic::new([gap, candidate.gap], [rate, end_rate], h).lowest();
-            if s > 0.01 && s < 0.99 && low < -self.located.tolerance(q) {
+            let tolerance = self.located.tolerance(q);
+            let lows = GapCubic::new([gap, candidate.gap], [rate, end_rate], h).lows();
+            if let Some((s, _)) = lows.into_iter().find(|(s, low)| *s > 0.01 && *s < 0.99 && *low < -tolerance) {
                 return Ok(Some(s * h));
             }
         }

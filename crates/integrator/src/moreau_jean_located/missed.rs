@@ -104,10 +104,18 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 let touches = cubic.zero(HALVINGS);
                 self.inside_after(model, from, (end.id, tolerance), [h, touches], work)?
             } else {
-                let (s, low) = cubic.lowest();
-                let dips = low < -tolerance && s > 0.0 && s < 1.0;
-                let tau = s * h;
-                (dips && self.is_inside_at(model, from, (end.id, tolerance), [h, tau], work)?).then_some(tau)
+                let mut inside = None;
+                for (s, low) in cubic.lows() {
+                    let dips = low < -tolerance && s > 0.0 && s < 1.0;
+                    let tau = s * h;
+                    if inside.is_none()
+                        && dips
+                        && self.is_inside_at(model, from, (end.id, tolerance), [h, tau], work)?
+                    {
+                        inside = Some(tau);
+                    }
+                }
+                inside
             };
             first = match (first, inside) {
                 (Some(first), Some(tau)) => Some(first.min(tau)),

@@ -134,9 +134,22 @@ impl Recorder<'_> {
         }
     }
 
-    /// Warns, once, of two blocks that are so fast that a step may miss their contact.
+    /// Warns, once, of a block that went through the ground, and of two blocks that are so fast that a step may miss their contact.
     #[inline(never)]
     fn warn_of_passing(&mut self, state: &State) {
+        if let Some((block, far)) = self.shapes.passing_ground(self.layout, &state.q, &state.v, state.dt) {
+            let block = &self.layout.blocks[block];
+            self.warn_once("fast-pass", state.t, || {
+                format!(
+                    "`{}` went through a crest of the ground in the step to t = {}: it moved by {}, more than its shorter side, and the step \
+                     saw no contact; take a step of at most {}",
+                    block.name,
+                    time(state.t),
+                    with_digits(far, "m", 2),
+                    with_digits(0.4 * block.side * state.dt / far, "s", 1)
+                )
+            });
+        }
         let Some((first, second, far)) = self.shapes.passing(self.layout, &state.q, &state.v, state.dt) else { return };
         let [first, second] = [first, second].map(|block| &self.layout.blocks[block]);
         self.warn_once("fast-pass", state.t, || {

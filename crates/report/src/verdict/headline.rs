@@ -84,13 +84,14 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         format!("slid by {} to the {}", with_unit(slid.abs(), "m"), if slid < 0.0 { "left" } else { "right" })
     });
     let beside = |text: String| if largest.is_empty() { text } else { format!("{text} ({largest})") };
+    let tumbled = of.tumbled.map(|turn| format!("tumbled by {}, then ", angle(turn.abs())));
     // Where nothing is said, it rests on its base.
     let side = side_below(of).filter(|_| of.lies_on != Some(Side::Base)).unwrap_or_default();
     let then_rested = of
         .rests_from
         .filter(|_| of.what != Fate::Rests)
         .map_or_else(String::new, |t| format!(", came to rest{} at {}", side_below(of).unwrap_or_default(), time(t)));
-    match of.what {
+    let fate = match of.what {
         Fate::Overturned => format!("overturned to the {way}{at}{then_rested}"),
         Fate::Left => {
             let block = scene.blocks.iter().find(|block| block.name == of.body);
@@ -123,7 +124,8 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         }
         Fate::Moves if of.still_from.is_some() => beside(format!("moved{}", still(of))),
         Fate::Moves => beside("still moves".to_owned()),
-    }
+    };
+    format!("{}{fate}", tumbled.unwrap_or_default())
 }
 
 /// That a block is still at the end, in words, of one that is not known to rest.

@@ -136,3 +136,47 @@ fn blocks_that_a_step_may_take_past_each_other_are_told_once() {
     assert!(slow.warnings.iter().all(|warning| warning.code != "fast-pass"), "{:?}", slow.warnings);
     assert!(!slow.impacts.is_empty());
 }
+
+#[test]
+fn what_turns_past_another_block_is_found_or_told() {
+    // A rod, 4 mm thick, whose point at the ball moves by 22 mm in a step.
+    let scene = |angle: f64| {
+        let ball = [0.45 * angle.cos(), 0.45 * angle.sin()];
+        let of = "density = \"1000 kg/m^3\", depth = \"1 m\"";
+        format!(
+            "time = {{ end = \"20 ms\", step = \"1 ms\" }}\nworld.gravity = \"0 m/s^2\"\n\
+             block.rod = {{ {of}, width = \"1 m\", height = \"4 mm\", position = [\"0 m\", \"0 m\"], spin = \"50 rad/s\" }}\n\
+             block.ball = {{ {of}, radius = \"3 mm\", position = [\"{} m\", \"{} m\"] }}\n\
+             contact.c = {{ between = [\"rod\", \"ball\"], friction = 0.0 }}\n",
+            ball[0], ball[1]
+        )
+    };
+    for k in 0..12 {
+        let scene = scene(0.5 + 0.005 * f64::from(k));
+        for scheme in ["moreau-jean-located", "event-driven"] {
+            let found = summary(&format!("rod-{scheme}-{k}"), &scene, &[("time.scheme", scheme)]);
+            assert_eq!(found.impacts.len(), 1, "{scheme}, {k}");
+        }
+        let found = summary(&format!("rod-closed-{k}"), &scene, &[("time.scheme", "moreau-jean-closed")]);
+        let told = found.warnings.iter().any(|warning| warning.code == "fast-pass");
+        assert!(told, "{k}: {:?}", found.warnings);
+    }
+}
+
+#[test]
+fn a_step_through_a_crest_of_the_ground_is_told() {
+    let scene = |speed: &str| {
+        format!(
+            "time = {{ end = \"20 ms\", step = \"1 ms\", scheme = \"moreau-jean-closed\" }}\n\
+             ground.profile.points = [[\"-1 m\", \"0 m\"], [\"-2 mm\", \"0 m\"], [\"0 m\", \"3 cm\"], [\"2 mm\", \"0 m\"], [\"1 m\", \"0 m\"]]\n\
+             block.b = {{ density = \"1000 kg/m^3\", depth = \"1 m\", width = \"2 cm\", height = \"2 cm\", position = [\"-9.2 cm\", \"1 cm\"], \
+             velocity = [\"{speed}\", \"0 m/s\"] }}\ncontact.c = {{ between = [\"b\", \"ground\"], friction = 0.0 }}\n"
+        )
+    };
+    let told = |speed: &str| {
+        let found = summary(&format!("spike-{}", &speed[..2]), &scene(speed), &[]);
+        found.warnings.iter().find(|warning| warning.code == "fast-pass").map(|warning| warning.text.clone())
+    };
+    assert!(told("20.5 m/s").is_some_and(|text| text.contains("`b` went through a crest of the ground")));
+    assert_eq!(told("10 m/s"), None);
+}
