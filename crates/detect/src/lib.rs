@@ -208,6 +208,13 @@ pub trait ContactDetector<const D: usize>: Send + Sync {
         room.clear();
         room.resize(out.len(), f64::INFINITY);
     }
+    /// How far the first body of a contact is beyond the second one along a unit direction, m: negative
+    /// where they overlap along it. Of bodies of several parts those count that touch. The default,
+    /// `None`, is of a detector that doesn't know.
+    fn beyond(&self, at: &dyn Geometry<D>, id: ContactId, direction: &Vector<D>) -> Option<f64> {
+        let _ = (at, id, direction);
+        None
+    }
     /// Whether the first side of a contact touches by one and the same point of its body as long as
     /// the contact lasts, as a corner does and a disc doesn't. The default, `false`, is always
     /// right: a scheme that needs accelerations then takes the derivative of the rows along the

@@ -111,6 +111,14 @@ pub(crate) struct Outline<'a> {
     pub(crate) frame: BodyFrame,
 }
 
+impl Outline<'_> {
+    /// How far it reaches along a unit direction of the world, m.
+    pub(crate) fn extent(&self, direction: &Vector<2>) -> f64 {
+        let of = |corner: &Vector<2>| direction.dot(&self.frame.point(corner));
+        self.corners.iter().map(of).fold(f64::NEG_INFINITY, f64::max) + self.radius
+    }
+}
+
 impl Part {
     fn holds(&self, corner: usize) -> bool {
         (self.first..self.first + self.corners.len()).contains(&corner)

@@ -263,6 +263,14 @@ impl ShapeDetector {
         touches.iter().for_each(each);
     }
 
+    /// The pair of a contact of two shapes, and which members they are of; `None` of another contact.
+    fn shapes_of(&self, id: ContactId) -> Option<(ShapePair, [usize; 2])> {
+        match self.pairs.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) {
+            Ok(found) => Some(self.pairs[found]),
+            Err(_) => self.near_pair(id.pair()).map(|near| (self.in_groups(&near), near.members)),
+        }
+    }
+
     /// Those of the contacts `ids` that there can be, with how far it is to the end of their side,
     /// m.
     fn located<'a>(
@@ -271,13 +279,7 @@ impl ShapeDetector {
         ids: &'a [ContactId],
     ) -> impl Iterator<Item = (Candidate<2>, f64)> + 'a {
         ids.iter().filter_map(move |id| {
-            let (pair, members) = match self.pairs.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) {
-                Ok(found) => self.pairs[found],
-                Err(_) => match self.near_pair(id.pair()) {
-                    Some(near) => (self.in_groups(&near), near.members),
-                    None => return self.located_elsewhere(at, *id),
-                },
-            };
+            let Some((pair, members)) = self.shapes_of(*id) else { return self.located_elsewhere(at, *id) };
             let touch = self.touch(at, members, CornerOnSide::from_number(id.point()))?;
             Some((candidate(&pair, &touch), touch.room))
         })
@@ -431,6 +433,17 @@ impl ContactDetector<2> for ShapeDetector {
             out.push(candidate);
             rooms.push(room);
         }
+    }
+
+    fn beyond(&self, at: &dyn Geometry<2>, id: ContactId, direction: &Vector<2>) -> Option<f64> {
+        let (_, members) = self.shapes_of(id)?;
+        let CornerOnSide { owner, corner, side, .. } = CornerOnSide::from_number(id.point());
+        let numbers = if owner == 0 { [corner, side] } else { [side, corner] };
+        let [first, second] = [0, 1].map(|k| {
+            let (member, part) = (members[k], self.shapes.part_of(members[k], numbers[k])?);
+            Some(self.shapes.outline(part, BodyFrame::of(self.shapes.members[member].body, at)))
+        });
+        Some(-first?.extent(&-direction) - second?.extent(direction))
     }
 
     fn keeps_point(&self, id: ContactId) -> bool {

@@ -62,8 +62,6 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     /// What was found of the new ones.
     found: Candidates<D>,
     found_rooms: Vec<f64>,
-    /// New contacts that may graze, in order of identity, and of how deep a body, m.
-    grazing: Vec<(ContactId, f64)>,
     /// Of each body: how deep it is in others, m.
     depths: Vec<f64>,
     /// Of each body: what would land within this time lands together with a contact that has just been closed, s; 0 where there is none.
@@ -121,7 +119,6 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             new: Vec::new(),
             found: Vec::new(),
             found_rooms: Vec::new(),
-            grazing: Vec::new(),
             depths: Vec::new(),
             landings: Vec::new(),
             rigid: Vec::new(),
@@ -158,7 +155,6 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.stage.reserve(model);
         self.row.reserve(1, model.size().row, model.parts().len());
         self.found_rooms.reserve(contacts);
-        self.grazing.reserve(contacts);
         for ids in [&mut self.closed, &mut self.looked, &mut self.new] {
             ids.reserve(contacts);
         }

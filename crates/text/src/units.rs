@@ -75,6 +75,8 @@ pub static UNITS: &[Unit] = &[
     ten("K", Dimension::TEMPERATURE, 0),
     // Standard gravity; g is the gram.
     odd("gn", Dimension::ACCELERATION, 9.806_65),
+    ten("gal", Dimension::ACCELERATION, -2),
+    ten("Gal", Dimension::ACCELERATION, -2),
 ];
 
 /// Names of units in words, and their symbols.

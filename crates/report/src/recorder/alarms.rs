@@ -141,7 +141,7 @@ impl Recorder<'_> {
             let block = &self.layout.blocks[block];
             self.warn_once("fast-pass", state.t, || {
                 format!(
-                    "`{}` went through a crest of the ground in the step to t = {}: it moved by {}, more than its shorter side, and the step \
+                    "`{}` went through a crest of the ground in the step to t = {}: it moved by {}, more than half its shorter side, and the step \
                      saw no contact; take a step of at most {}",
                     block.name,
                     time(state.t),

@@ -71,7 +71,7 @@ impl Shapes {
     }
 
     /// A block with a contact with the ground that went through it in a step of `dt` (s) that ended with these coordinates and velocities, and
-    /// how far it moved, m: by more than its shorter side, so that it may have passed a crest of the ground's profile within the step.
+    /// how far it moved, m: by more than half its shorter side, so that it may have passed a crest of the ground's profile within the step.
     #[must_use]
     pub fn passing_ground(&self, layout: &Layout, q: &[f64], v: &[f64], dt: f64) -> Option<(usize, f64)> {
         let profile = self.profile.as_ref()?;
@@ -86,13 +86,14 @@ impl Shapes {
                 let at = place.range.start;
                 let [dx, dy] = [dt * v[at], dt * v[at + 1]];
                 let far = dx.hypot(dy);
-                if far <= place.side {
+                if far <= 0.5 * place.side {
                     return None;
                 }
                 let way = [on_profile(q[at] - dx, q[at + 1] - dy), on_profile(q[at], q[at + 1])];
-                let points = profile.points();
-                let through =
-                    points.clone().zip(points.skip(1)).any(|(a, b)| apart(way, [a, b]) < THROUGH * place.side);
+                let through = profile
+                    .points()
+                    .zip(profile.points().skip(1))
+                    .any(|(a, b)| apart(way, [a, b]) < THROUGH * place.side);
                 through.then_some((block, far))
             },
         )
