@@ -373,6 +373,34 @@ fn keys_that_trade_off_are_told() {
     assert!((value(0) * value(1) / (3.0 * 2700.0) - 1.0).abs() < 0.05, "{found}");
 }
 
+/// On rigid ground the depth of a block doesn't matter for its motion.
+#[test]
+fn a_key_without_effect_leaves_the_others_known_and_a_wrong_held_key_is_told() {
+    let folder = folder("no-effect");
+    std::fs::copy(scenario("free-rocking-on-ground.toml"), folder.join("scene.toml")).unwrap();
+    let end = ["--set", "time.end=0.3 s", "--quiet"];
+    done(&folder, &[&["run", "scene.toml", "--out", "truth", "--set", "output.every=5 ms"], &end[..]].concat());
+    let given = ["fit", "scene.toml", "truth/trajectory.csv", "--samples", "4", "--offset", "0 deg", "--vary"];
+    let vary = ["block.rocker.height=12 cm..15 cm", "block.rocker.depth=2 cm..4 cm", "--out", "fitted"];
+    let told = done(&folder, &[&given[..], &vary[..], &end[..]].concat());
+    let found = read(&folder.join("fitted/fit.json"));
+    let estimates = &found["estimates"];
+    assert!(estimates[0]["standard_error"].as_f64().unwrap() < 0.01, "{found}");
+    assert!((estimates[0]["value"].as_f64().unwrap() - 13.5).abs() < 0.01, "{found}");
+    assert_eq!(estimates[1]["interval_95"], serde_json::json!([2.0, 4.0]), "within the bounds");
+    assert!(told.contains("cm (all of its range, 2 to 4, 95 %)"), "{told}");
+    assert!(told.contains("the motion doesn’t depend on block.rocker.depth"), "{told}");
+    assert!(told.contains("fitted up to t = 0.300 s (the end of the run), 61 of 61 rows"), "{told}");
+    assert!(!told.contains("don’t trust the intervals"), "{told}");
+    assert_eq!(found["is_misfit"], false);
+    let page = std::fs::read_to_string(folder.join("fitted/fit.html")).unwrap();
+    assert!(page.contains("(found)") && !page.contains("(given)"), "{page}");
+    let wrong = ["block.rocker.height=12 cm..15 cm", "--out", "wrong", "--set", "block.rocker.tilt=4.5 deg"];
+    let told = done(&folder, &[&given[..], &wrong[..], &end[..]].concat());
+    assert!(told.contains("don’t trust the intervals"), "{told}");
+    assert_eq!(read(&folder.join("wrong/fit.json"))["is_misfit"], true);
+}
+
 #[test]
 fn bad_measured_tables_are_refused_with_their_line() {
     let folder = folder("bad");

@@ -1,9 +1,9 @@
 //! How well the fitted values are known, and which of them trade off.
 
+use super::beside::{self, Fitted};
 use super::objective::{Objective, Trial};
 use super::{Evaluation, matrix};
 use crate::measured::Channel;
-use crate::runner;
 
 /// The confidence in a fitted value.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +24,9 @@ pub struct Estimate {
     /// The least and the largest value that were found to fit as well, if they go beyond what the standard
     /// error says; `None` for what isn't a key.
     pub as_good: Option<(f64, f64)>,
-    /// The 95 % interval by the standard error, for a key on the scale of its range: of a logarithmic one it is positive.
+    /// The bounds of its range; `None` for what isn't a key.
+    pub bounds: Option<(f64, f64)>,
+    /// The 95 % interval by the standard error, for a key on the scale of its range and within it.
     interval: [f64; 2],
 }
 
@@ -48,19 +50,14 @@ pub struct TradeOff {
 }
 
 /// Two-sided 95 % quantile of the normal distribution.
-const NORMAL_95: f64 = 1.959_963_985;
+pub(super) const NORMAL_95: f64 = 1.959_963_985;
+/// A key of which the whole range changes the residuals by less than this share of their deviation has no effect.
+const NO_EFFECT: f64 = 1e-3;
 /// Correlations from here on are told.
 const TRADES: f64 = 0.9;
 /// 95 % quantile of χ² with one degree of freedom: values whose sum of squares over the variance is by no more
 /// above the least are in the interval of the profile likelihood (Venzon and Moolgavkar 1988, doi 10.2307/2347496).
 const CHI_SQUARED_95: f64 = NORMAL_95 * NORMAL_95;
-/// Values beside the fitted one are looked at from this share of the range on, each `FARTHER` times as far away.
-const NEAREST: f64 = 2e-3;
-const FARTHER: f64 = 1.3;
-/// Values beside the fitted ones are better where their sum of squares is below this part of the fitted one's.
-const BETTER: f64 = 0.99;
-/// How often the distance between values that still fit and the next is halved.
-const HALVINGS: usize = 4;
 /// An interval by the standard error that is passed by less than this factor is confirmed by what is beside it.
 const CONFIRMED: f64 = 1.3;
 /// Distance of the differences at first, as a share of the range.
@@ -72,6 +69,8 @@ pub(super) struct Confidence {
     pub(super) correlation: Vec<Vec<f64>>,
     pub(super) trade_offs: Vec<TradeOff>,
     pub(super) residual_correlation: f64,
+    /// How improbable what is left is for noise, in standard deviations.
+    pub(super) misfit: f64,
     /// Values beside the fitted ones that fit better than these.
     pub(super) better: Option<Vec<f64>>,
 }
@@ -136,30 +135,30 @@ pub(super) fn of(
     let n = fitted.residuals.len() as f64;
     let freedom = (n - columns.len() as f64).max(1.0);
     let variance = fitted.cost * n / freedom * fewer;
-    let inverse = |columns: &[Vec<f64>]| {
-        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let normal: Vec<Vec<f64>> = columns.iter().map(|a| columns.iter().map(|b| product(a, b)).collect()).collect();
-        matrix::inverse(&normal)
+    // What the motion doesn't depend on says nothing of the others, and isn't known: the rest is.
+    let matters = |k: usize, column: &[f64]| {
+        let norm = column.iter().map(|x| x * x).sum::<f64>().sqrt();
+        norm > if k < keys.len() { NO_EFFECT * variance.sqrt() } else { 0.0 }
     };
+    let known: Vec<usize> = (0..columns.len()).filter(|&k| matters(k, &columns[k])).collect();
     // Once more with differences over about a standard error: over a shorter distance they would
     // show the steps of the function, over a longer one its curvature.
-    if let Some(first) = inverse(&columns) {
-        for k in 0..keys.len() {
+    if let Some(first) = inverse_of(&columns, &known) {
+        for &k in known.iter().filter(|&&k| k < keys.len()) {
             let reach = (variance * first[k][k]).sqrt().clamp(2e-4, 5e-2);
             columns[k] = difference(k, reach)?;
         }
     }
+    let known: Vec<usize> = known.into_iter().filter(|&k| matters(k, &columns[k])).collect();
     let count = columns.len();
-    let (covariance, is_known) = match inverse(&columns) {
-        Some(inverse) => (inverse, true),
-        None => (vec![vec![0.0; count]; count], false),
-    };
-    let error = |k: usize| if is_known { (variance * covariance[k][k]).sqrt() } else { f64::INFINITY };
+    let covariance = inverse_of(&columns, &known);
+    let variance_of = |k: usize| covariance.as_ref().map(|found| found[k][k]).filter(|found| *found > 0.0);
+    let error = |k: usize| variance_of(k).map_or(f64::INFINITY, |found| (variance * found).sqrt());
     let correlation: Vec<Vec<f64>> = (0..count)
         .map(|i| {
-            let one = |j: usize| match is_known {
-                true => covariance[i][j] / (covariance[i][i] * covariance[j][j]).sqrt(),
-                false => f64::NAN,
+            let one = |j: usize| match (&covariance, variance_of(i), variance_of(j)) {
+                (Some(covariance), Some(a), Some(b)) => covariance[i][j] / (a * b).sqrt(),
+                _ => f64::NAN,
             };
             (0..count).map(one).collect()
         })
@@ -170,12 +169,34 @@ pub(super) fn of(
         .map(|pair| TradeOff { pair, correlation: correlation[pair[1]][pair[0]] })
         .collect();
     let way = |k: usize| -> Vec<f64> {
-        let along = |j: usize| if is_known { covariance[j][k] / covariance[k][k] } else { f64::from(u8::from(j == k)) };
+        let along = |j: usize| match (&covariance, variance_of(k)) {
+            (Some(covariance), Some(own)) => covariance[j][k] / own,
+            _ => f64::from(u8::from(j == k)),
+        };
         (0..keys.len()).map(along).collect()
     };
     let ways: Vec<Vec<f64>> = (0..keys.len()).map(way).collect();
     let errors: Vec<f64> = (0..keys.len()).map(error).collect();
-    let Beside { as_good, better } = look_beside(objective, fitted, &ways, &errors, variance, threads, evaluations);
+    let allowed = CHI_SQUARED_95 * variance / n;
+    let evaluate = |at: &[f64]| objective.trial(at, fitted.shift).ok().map(|trial| (trial.residuals, trial.cost));
+    let center = Fitted { at: &fitted.at, cost: fitted.cost, ways: &ways, errors: &errors, allowed };
+    let beside = beside::look(&center, &evaluate, threads, objective.cancel);
+    evaluations.extend(beside.tried.iter().map(|(at, cost)| Evaluation {
+        stage: "beside",
+        values: keys.iter().zip(at).map(|(key, share)| key.at(*share)).collect(),
+        cost: *cost,
+        until: Some(objective.until),
+    }));
+    let tried = tried_that_fit(evaluations, objective.until, fitted.cost + allowed);
+    let as_good = |k: usize| {
+        let (low, high) = beside.as_good[k];
+        let others = tried.iter().filter_map(|values| keys[k].share(values[k]));
+        let (low, high) = others.fold((low, high), |(low, high), share| (low.min(share), high.max(share)));
+        let limit = CONFIRMED * NORMAL_95 * errors[k];
+        let is_wider = fitted.at[k] - low > limit || high - fitted.at[k] > limit;
+        is_wider.then(|| (keys[k].at(low), keys[k].at(high)))
+    };
+    let as_good: Vec<Option<(f64, f64)>> = (0..keys.len()).map(as_good).collect();
     let estimates = names
         .into_iter()
         .enumerate()
@@ -187,99 +208,48 @@ pub(super) fn of(
             at_bound: k < keys.len() && (fitted.at[k] <= 1e-6 || fitted.at[k] >= 1.0 - 1e-6),
             share_of_range: (k < keys.len()).then(|| error(k)),
             interval: match keys.get(k) {
-                Some(key) => [-1.0, 1.0].map(|side| key.beyond(fitted.at[k] + side * NORMAL_95 * error(k))),
+                Some(key) => [-1.0, 1.0].map(|side| key.at(fitted.at[k] + side * NORMAL_95 * error(k))),
                 None => [-1.0, 1.0].map(|side| value + side * NORMAL_95 * error(k)),
             },
+            bounds: keys.get(k).map(super::FitKey::bounds),
             as_good: as_good.get(k).copied().flatten(),
         })
         .collect();
-    Some(Confidence { estimates, correlation, trade_offs, residual_correlation: rho, better })
+    Some(Confidence {
+        estimates,
+        correlation,
+        trade_offs,
+        residual_correlation: rho,
+        misfit: misfit(fitted.cost * n, freedom, rho),
+        better: beside.better,
+    })
 }
 
-/// Values beside the fitted ones: of key `k` on one side, at growing distances. The other keys follow along `way`, by
-/// which they make up for a change of this one as far as the covariance knows.
-fn beside(fitted: &Trial, k: usize, side: f64, way: &[f64], error: f64) -> Vec<Vec<f64>> {
-    let mut places: Vec<Vec<f64>> = Vec::new();
-    let mut distance = (NORMAL_95 * error).max(NEAREST);
-    while distance < 1.0 {
-        let moved = |(at, way): (&f64, &f64)| (at + side * distance * way).clamp(0.0, 1.0);
-        let at: Vec<f64> = fitted.at.iter().zip(way).map(moved).collect();
-        let is_end = (at[k] - fitted.at[k]).abs() < distance * (1.0 - 1e-9);
-        if places.last().is_none_or(|last| last[k] != at[k]) && at[k] != fitted.at[k] {
-            places.push(at);
-        }
-        if is_end {
-            break;
-        }
-        distance *= FARTHER;
+/// The inverse of JᵀJ of the columns with these numbers, in a matrix for all: 0 elsewhere.
+fn inverse_of(columns: &[Vec<f64>], known: &[usize]) -> Option<Vec<Vec<f64>>> {
+    let product = |a: usize, b: usize| columns[a].iter().zip(&columns[b]).map(|(a, b)| a * b).sum::<f64>();
+    let normal: Vec<Vec<f64>> = known.iter().map(|&a| known.iter().map(|&b| product(a, b)).collect()).collect();
+    let inverse = matrix::inverse(&normal)?;
+    let mut all = vec![vec![0.0; columns.len()]; columns.len()];
+    for (row, &a) in inverse.iter().zip(known) {
+        known.iter().zip(row).for_each(|(&b, value)| all[a][b] = *value);
     }
-    places
+    Some(all)
 }
 
-/// What is beside the fitted values.
-struct Beside {
-    /// Of each key: the values that fit as well as the fitted one, on both sides of it, if they go beyond what its standard error says.
-    as_good: Vec<Option<(f64, f64)>>,
-    /// The best values of all keys, if they are better than the fitted ones.
-    better: Option<Vec<f64>>,
+/// The values of all that was tried up to the time `until` and leaves no more than `most`: starts that ended elsewhere
+/// are among them.
+fn tried_that_fit(evaluations: &[Evaluation], until: f64, most: f64) -> Vec<Vec<f64>> {
+    let fits = |tried: &&Evaluation| tried.until == Some(until) && tried.cost <= most;
+    evaluations.iter().filter(fits).map(|tried| tried.values.clone()).collect()
 }
 
-/// Evaluates values beside the fitted ones.
-///
-/// The motion is a rough function of the keys: each impact is shifted by the time step, and whole impacts come and go. At
-/// the bottom of a wide valley the differences then see its stones, and the standard error is far too small.
-fn look_beside(
-    objective: &Objective<'_>,
-    fitted: &Trial,
-    ways: &[Vec<f64>],
-    errors: &[f64],
-    variance: f64,
-    threads: usize,
-    evaluations: &mut Vec<Evaluation>,
-) -> Beside {
-    let keys = objective.keys.len();
-    let places: Vec<(usize, Vec<f64>)> = (0..keys)
-        .flat_map(|k| [-1.0, 1.0].map(|side| (k, side)))
-        .flat_map(|(k, side)| beside(fitted, k, side, &ways[k], errors[k]).into_iter().map(move |at| (k, at)))
-        .collect();
-    let rows = fitted.residuals.len() as f64;
-    let cost =
-        |(_, at): &(usize, Vec<f64>)| objective.trial(at, fitted.shift).map_or(f64::INFINITY, |trial| trial.cost);
-    let costs = runner::in_order(&places, threads, objective.cancel, cost, |_| {});
-    let tried = |at: &[f64], cost: f64| {
-        let values = objective.keys.iter().zip(at).map(|(key, share)| key.at(*share)).collect();
-        Evaluation { stage: "beside", values, cost }
-    };
-    evaluations.extend(places.iter().zip(&costs).map(|((_, at), cost)| tried(at, cost.unwrap_or(f64::INFINITY))));
-    let least = places.iter().zip(&costs).filter_map(|((_, at), cost)| Some((at, (*cost)?)));
-    let least = least.min_by(|a, b| a.1.total_cmp(&b.1));
-    let better = least.filter(|(_, cost)| *cost < BETTER * fitted.cost).map(|(at, _)| at.clone());
-    let fits = |cost: f64| (cost - fitted.cost) * rows <= CHI_SQUARED_95 * variance;
-    let fit = |number: usize| costs.get(number).is_some_and(|cost| cost.is_some_and(fits));
-    let mut end = |k: usize, side: f64| -> f64 {
-        let mine: Vec<usize> = (0..places.len())
-            .filter(|&number| places[number].0 == k && side * (places[number].1[k] - fitted.at[k]) > 0.0)
-            .collect();
-        let Some(last) = mine.iter().rposition(|&number| fit(number)) else { return fitted.at[k] };
-        let mut inside = places[mine[last]].1.clone();
-        let Some(&beyond) = mine.get(last + 1) else { return inside[k] };
-        let mut outside = places[beyond].1.clone();
-        for _ in 0..HALVINGS {
-            let middle: Vec<f64> = inside.iter().zip(&outside).map(|(a, b)| 0.5 * (a + b)).collect();
-            let place = (k, middle);
-            let found = cost(&place);
-            evaluations.push(tried(&place.1, found));
-            if fits(found) { inside = place.1 } else { outside = place.1 }
-        }
-        inside[k]
-    };
-    let of = |k: usize| {
-        let [low, high] = [-1.0, 1.0].map(|side| end(k, side));
-        let limit = CONFIRMED * NORMAL_95 * errors[k];
-        let is_wider = fitted.at[k] - low > limit || high - fitted.at[k] > limit;
-        is_wider.then(|| (objective.keys[k].at(low), objective.keys[k].at(high)))
-    };
-    Beside { as_good: (0..keys).map(of).collect(), better }
+/// By how many standard deviations a sum of squares of residuals over their noise is above what noise leaves (Wilson and
+/// Hilferty 1931, doi 10.1073/pnas.17.12.684): residuals of which one resembles the next vary more.
+fn misfit(sum: f64, freedom: f64, rho: f64) -> f64 {
+    let rho = rho.clamp(0.0, 0.999);
+    let spread = 2.0 / (9.0 * freedom * (1.0 - rho * rho) / (1.0 + rho * rho));
+    ((sum / freedom).cbrt() - (1.0 - spread)) / spread.sqrt()
 }
 
 /// The correlation of each value with the next.
@@ -288,4 +258,40 @@ fn lag_one(values: &[f64]) -> f64 {
     let all: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     let next: f64 = values.windows(2).map(|pair| (pair[0] - mean) * (pair[1] - mean)).sum();
     if all > 0.0 { next / all } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_has_no_effect_leaves_the_others_known() {
+        let columns = [vec![1.0, 2.0, 0.0], vec![0.0; 3], vec![0.0, 1.0, 3.0]];
+        let all = inverse_of(&columns, &[0, 2]).unwrap();
+        let two = inverse_of(&[columns[0].clone(), columns[2].clone()], &[0, 1]).unwrap();
+        assert_eq!([all[0][0], all[0][2], all[2][2], all[1][1]], [two[0][0], two[0][1], two[1][1], 0.0]);
+        assert!(inverse_of(&columns, &[0, 1, 2]).is_none());
+    }
+
+    #[test]
+    fn all_that_was_tried_and_fits_counts() {
+        let tried = |stage, until, cost| Evaluation { stage, values: vec![cost], cost, until };
+        let all = [
+            tried("samples", None, 0.1),
+            tried("improvement", Some(0.3), 0.2),
+            tried("improvement", Some(1.0), 1.01),
+            tried("simplex", Some(1.0), 1.2),
+            tried("beside", Some(1.0), 1.03),
+        ];
+        assert_eq!(tried_that_fit(&all, 1.0, 1.05), [vec![1.01], vec![1.03]]);
+    }
+
+    #[test]
+    fn what_noise_leaves_is_no_misfit() {
+        // χ² with 100 degrees of freedom: quantiles of 0.5, 0.95 and 0.999.
+        for (sum, normal) in [(99.33, 0.0), (124.34, 1.645), (149.45, 3.090)] {
+            assert!((misfit(sum, 100.0, 0.0) - normal).abs() < 5e-3, "{sum}");
+        }
+        assert!(misfit(149.45, 100.0, 0.8) < 2.0, "fewer numbers, and less sure");
+    }
 }

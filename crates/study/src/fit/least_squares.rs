@@ -27,10 +27,20 @@ pub(super) fn levenberg_marquardt<T>(
     reach: f64,
     of: &mut impl FnMut(&[f64], &T) -> Option<Point<T>>,
 ) -> Point<T> {
+    levenberg_marquardt_within(ITERATIONS, start, reach, of)
+}
+
+/// The same with at most so many iterations.
+pub(super) fn levenberg_marquardt_within<T>(
+    iterations: usize,
+    start: Point<T>,
+    reach: f64,
+    of: &mut impl FnMut(&[f64], &T) -> Option<Point<T>>,
+) -> Point<T> {
     let mut best = start;
     let mut damping = 1e-2;
     let n = best.at.len();
-    for _ in 0..ITERATIONS {
+    for _ in 0..iterations {
         let Some(jacobian) = jacobian(&best, reach, of) else { break };
         let rows = best.residuals.len();
         if jacobian.iter().any(|column| column.len() != rows) {

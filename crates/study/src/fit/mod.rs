@@ -1,5 +1,6 @@
 //! The values of keys of a scene with which its motion fits a measured one best.
 
+mod beside;
 mod confidence;
 mod keys;
 mod least_squares;
@@ -51,6 +52,8 @@ pub struct Evaluation {
     /// Mean square of the differences over the noise of the samples, or, of the samples over the
     /// ranges, their [mismatch](crate::compare::Alignment::mismatch); infinite if the run failed.
     pub cost: f64,
+    /// Up to when the motions were compared, s; `None` for the samples over the ranges.
+    pub until: Option<f64>,
 }
 
 /// A fit.
@@ -73,6 +76,12 @@ pub struct Fit {
     pub cost: f64,
     /// Correlation of one residual with the next.
     pub residual_correlation: f64,
+    /// How improbable the residuals are for noise, in standard deviations of a normal distribution.
+    pub misfit: f64,
+    /// Up to when the motions were compared, s.
+    pub until: f64,
+    /// Number of measured rows that were compared.
+    pub rows: usize,
     /// Number of residuals.
     pub residuals: usize,
     /// The different values at which starts ended, best first: with their cost.
@@ -116,7 +125,7 @@ pub enum FitError {
 /// Reports progress: phase, how many of how many are done.
 pub type ReportFit<'a> = dyn FnMut(&str, usize, usize) + Send + 'a;
 
-/// Starts that are improved.
+/// Samples that are improved, and besides the scene's own values.
 const STARTS: usize = 4;
 /// How much of the motion is fitted one after the other, with the distance of differences, as a share
 /// of the range.
@@ -202,12 +211,13 @@ impl Fit {
             }
         }
         let found = confidence_of_best(&objective, &mut best, settings.threads, &mut evaluations, report)?;
+        if objective.cancel.load(std::sync::atomic::Ordering::Relaxed) {
+            return Err(FitError::Interrupted);
+        }
         let fitted = &best[0];
+        let (fitted_until, fitted_rows) = (objective.until, objective.rows(&fitted.trace, fitted.shift).len());
         let setting = objective.setting(&fitted.at);
         let Some(found) = found else {
-            if objective.cancel.load(std::sync::atomic::Ordering::Relaxed) {
-                return Err(FitError::Interrupted);
-            }
             let values =
                 keys.iter().zip(&fitted.at).map(|(key, share)| format!("{} = {}", key.key(), key.text(key.at(*share))));
             return Err(FitError::NoConfidence(values.collect::<Vec<_>>().join(", ")));
@@ -216,8 +226,13 @@ impl Fit {
             let alignment = AlignmentSettings { shift: Some(shift), sign: Some(objective.sign) };
             // The zero of the angle was taken in the turned motion.
             let offset = objective.sign.factor() * offset;
-            let settings = CompareSettings { alignment, window: settings.window, offset, horizon: Some(horizon) };
-            Comparison::of(measured, trace, settings)
+            let compare = CompareSettings { alignment, window: settings.window, offset, horizon: Some(horizon) };
+            Comparison::of(measured, trace, compare).map(|mut comparison| {
+                // For the comparison they are given; here they were fitted unless the user gave them.
+                comparison.alignment.shift_found = settings.alignment.shift.is_none();
+                comparison.alignment.sign_found = settings.alignment.sign.is_none();
+                comparison
+            })
         };
         let whole = Objective {
             until: resolved.scene.time.end,
@@ -239,6 +254,9 @@ impl Fit {
             correlation: found.correlation,
             cost: fitted.cost,
             residual_correlation: found.residual_correlation,
+            misfit: found.misfit,
+            until: fitted_until,
+            rows: fitted_rows,
             residuals: fitted.residuals.len(),
             restarts: best.iter().map(|trial| (value(trial), trial.cost)).collect(),
             evaluations,
@@ -368,15 +386,23 @@ fn search<'a>(
             }
         };
         let values = keys.iter().zip(&places[number]).map(|(key, share)| key.at(*share)).collect();
-        evaluations.push(Evaluation { stage: "samples", values, cost });
+        evaluations.push(Evaluation { stage: "samples", values, cost, until: None });
     }
     ranked.retain(|(_, mismatch, _)| mismatch.is_finite());
     ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
     let Some(&(side, ..)) = ranked.first() else { return Err(FitError::NoMotion(why)) };
     let chosen = objectives.into_iter().nth(side).ok_or(FitError::Interrupted)?;
-    let near = ranked.iter().filter(|(other, ..)| *other == side).take(STARTS);
-    let starts: Vec<Trial> = near.filter_map(|(_, _, number)| chosen.trial_anywhere(&places[*number]).ok()).collect();
+    let near = ranked.iter().filter(|(other, ..)| *other == side).map(|(.., number)| *number);
+    let is_own = |number: usize| own.is_some() && number == 0;
+    let starts: Vec<Trial> =
+        started_from(near, is_own).filter_map(|n| chosen.trial_anywhere(&places[n]).ok()).collect();
     if starts.is_empty() { Err(FitError::NoMotion(why)) } else { Ok((chosen, starts)) }
+}
+
+/// The first of the ranked numbers, and the scene's own: far off at the end of the motion they may be ranked behind
+/// values with another number of impacts, and are near the right ones all the same.
+fn started_from(ranked: impl Iterator<Item = usize>, is_own: impl Fn(usize) -> bool) -> impl Iterator<Item = usize> {
+    ranked.enumerate().filter(move |(rank, number)| *rank < STARTS || is_own(*number)).map(|(_, number)| number)
 }
 
 /// The angle at which the block starts, rad, from which angles of markers without places are
@@ -396,7 +422,7 @@ fn distinct(trials: Vec<Trial>, reach: f64) -> Vec<Trial> {
             kept.push(trial);
         }
     }
-    kept.truncate(STARTS);
+    kept.truncate(STARTS + 1);
     kept
 }
 
@@ -423,13 +449,19 @@ fn improve(
         Point { at: trial.at.clone(), residuals, cost: trial.cost, kept: (trial.shift, Some(trial)) }
     };
     let tried = std::sync::Mutex::new(Vec::new());
+    let until = Some(objective.until);
     let evaluate = |stage: &'static str| {
         let tried = &tried;
         move |at: &[f64], kept: &(f64, Option<Trial>)| -> Option<Start> {
             let trial = objective.trial(at, kept.0).ok();
             let values = objective.keys.iter().zip(at).map(|(key, share)| key.at(*share)).collect();
             let cost = trial.as_ref().map_or(f64::INFINITY, |trial| trial.cost);
-            tried.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push(Evaluation { stage, values, cost });
+            tried.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push(Evaluation {
+                stage,
+                values,
+                cost,
+                until,
+            });
             trial.filter(|trial| trial.cost.is_finite()).map(point)
         }
     };
@@ -466,4 +498,16 @@ fn improve(
     best.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     evaluations.extend(tried.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner));
     if objective.cancel.load(std::sync::atomic::Ordering::Relaxed) { Err(FitError::Interrupted) } else { Ok(best) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scenes_own_values_are_always_improved() {
+        let started = |own: usize| started_from([7, 3, 9, 1, 5, 0, 4].into_iter(), move |number| number == own);
+        assert_eq!(started(0).collect::<Vec<_>>(), [7, 3, 9, 1, 0]);
+        assert_eq!(started(3).collect::<Vec<_>>(), [7, 3, 9, 1]);
+    }
 }

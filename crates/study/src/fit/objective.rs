@@ -121,7 +121,7 @@ impl<'a> Objective<'a> {
     }
 
     /// The rows that are compared with a time shift.
-    fn rows(&self, trace: &MotionTrace, shift: f64) -> std::ops::Range<usize> {
+    pub(super) fn rows(&self, trace: &MotionTrace, shift: f64) -> std::ops::Range<usize> {
         let begin = if trace.is_held() { f64::NEG_INFINITY } else { 0.0 };
         let first = self.motion.t.partition_point(|t| t + shift < begin);
         let last = self.motion.t.partition_point(|t| t + shift <= self.until);

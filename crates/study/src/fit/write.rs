@@ -25,6 +25,12 @@ pub const FILES: [&str; 10] = [
 /// A key whose standard error is more than this share of its range is hardly determined.
 const HARDLY: f64 = 0.15;
 
+/// Residuals whose sum of squares is above that of noise by so many standard deviations are more than noise.
+const IMPROBABLE: f64 = 3.0;
+
+/// Another minimum with a sum of squares up to so many times the least is told.
+const HARDLY_WORSE: f64 = 2.0;
+
 /// An interval whose sides differ by more than this share of its width is told by its ends.
 const UNEVEN: f64 = 0.1;
 
@@ -88,7 +94,12 @@ pub fn json(fit: &Fit, scene: &str, measured: &str, block: &str) -> String {
         "mean_square_over_noise": fit.cost,
         "residuals": fit.residuals,
         "residual_correlation": fit.residual_correlation,
+        "misfit": fit.misfit,
+        "is_misfit": is_misfit(fit),
+        "minima_hardly_worse": hardly_worse(fit).map(|(values, cost)| json!({ "values": values, "cost": cost })).collect::<Vec<_>>(),
         "horizon": fit.horizon,
+        "fitted_until": fit.until,
+        "fitted_rows": fit.rows,
         "restarts": restarts,
         "evaluations": fit.evaluations.len(),
     });
@@ -96,17 +107,40 @@ pub fn json(fit: &Fit, scene: &str, measured: &str, block: &str) -> String {
     serde_json::to_string_pretty(&value).unwrap_or_default() + "\n"
 }
 
-/// A value with half of its 95 % interval, to two digits of the standard error.
+/// Whether what is left is too much for noise.
+fn is_misfit(fit: &Fit) -> bool {
+    fit.misfit > IMPROBABLE
+}
+
+/// Values outside the intervals at which other starts ended, with hardly more left.
+fn hardly_worse(fit: &Fit) -> impl Iterator<Item = &(Vec<f64>, f64)> {
+    let outside = |values: &[f64]| {
+        values.iter().zip(&fit.estimates).any(|(value, found)| {
+            let (low, high) = found.interval();
+            *value < low || *value > high
+        })
+    };
+    fit.restarts.iter().skip(1).filter(move |(values, cost)| *cost <= HARDLY_WORSE * fit.cost && outside(values))
+}
+
+/// A value with half of its 95 % interval, to two digits of the standard error; ends that are bounds are named.
 fn with_error(found: &Estimate) -> String {
     let Shown { value, error, interval: (low, high), unit } = Shown::of(found);
     let (below, above) = (value - low, high - value);
-    if (above - below).abs() > UNEVEN * (above + below) && (above + below).is_finite() {
+    let bounds = found.bounds.map(|(least, most)| (low <= least, high >= most)).unwrap_or_default();
+    let is_uneven = (above - below).abs() > UNEVEN * (above + below) && (above + below).is_finite();
+    if is_uneven || bounds.0 || bounds.1 {
         let decimals = decimals_of(0.25 * (above + below)).unwrap_or(5);
-        let [value, low, high] = [value, low, high].map(|value| format!("{value:.decimals$}"));
-        return format!("{value}{unit} ({low} to {high}, 95 %)");
+        let [value, from, to] = [value, low, high].map(|value| format!("{value:.decimals$}"));
+        return match bounds {
+            (true, true) => format!("{value}{unit} (all of its range, {} to {}, 95 %)", power(low), power(high)),
+            (true, false) => format!("{value}{unit} (from its bound, {}, to {to}, 95 %)", power(low)),
+            (false, true) => format!("{value}{unit} ({from} to its bound, {}, 95 %)", power(high)),
+            (false, false) => format!("{value}{unit} ({from} to {to}, 95 %)"),
+        };
     }
     let Some(decimals) = decimals_of(error) else { return format!("{}{unit}", short(value)) };
-    format!("{value:.decimals$} ± {:.decimals$}{unit} (95 %)", 1.96 * error)
+    format!("{value:.decimals$} ± {:.decimals$}{unit} (95 %)", 0.5 * (above + below))
 }
 
 /// An estimate as people read it: angles in degrees, as in the figures.
@@ -175,7 +209,12 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
                 if found.unit.is_empty() { String::new() } else { format!(" {}", found.unit) },
             ));
         }
-        if found.share_of_range.is_some_and(|share| !(share <= HARDLY)) {
+        if found.share_of_range.is_some_and(|share| !share.is_finite()) {
+            texts.push(format!(
+                "warning: near the fitted values the motion doesn’t depend on {}: it isn’t determined",
+                found.name
+            ));
+        } else if found.share_of_range.is_some_and(|share| !(share <= HARDLY)) {
             texts.push(format!(
                 "warning: the motion hardly determines {}: its standard error is {} of its range",
                 found.name,
@@ -191,12 +230,39 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
             found.correlation
         ));
     }
-    let left = fit.cost.sqrt();
-    texts.push(if left > 1.5 {
-        format!("warning: the residuals are {} times the noise of the samples: the model doesn’t describe all of the motion, and the errors are only as good as the model", short(left))
+    for (values, cost) in hardly_worse(fit) {
+        let pairs = fit.estimates.iter().zip(values).map(|(found, value)| {
+            let unit = if found.unit.is_empty() { String::new() } else { format!(" {}", found.unit) };
+            let (low, high) = found.interval();
+            let decimals = decimals_of(0.25 * (high - low)).unwrap_or(5);
+            format!("{} = {value:.decimals$}{unit}", found.name)
+        });
+        texts.push(format!(
+            "warning: there is another minimum that fits hardly worse, {}: it leaves {} times the noise",
+            pairs.collect::<Vec<_>>().join(", "),
+            short(cost.sqrt())
+        ));
+    }
+    let left = format!("the residuals are {} times the noise of the samples", short(fit.cost.sqrt()));
+    texts.push(if fit.cost.sqrt() > 1.5 {
+        format!("warning: {left}: the model doesn’t describe all of the motion, and the errors are only as good as the model")
     } else {
-        format!("the residuals are {} times the noise of the samples", short(left))
+        left
     });
+    if is_misfit(fit) {
+        texts.push(format!(
+            "warning: what is left is more than noise ({} standard deviations above it): this is another minimum, or a key that was held has a wrong value; don’t trust the intervals",
+            short(fit.misfit)
+        ));
+    }
+    let cut = if fit.until < fit.comparison.trace.end() { "its horizon" } else { "the end of the run" };
+    texts.push(format!(
+        "fitted up to t = {:.3} s ({cut}), {} of {} rows",
+        fit.until,
+        fit.rows,
+        fit.comparison.measured.t.len()
+    ));
+    texts.push("the 95 % intervals hold if the keys that were not varied have the right values".to_owned());
     texts.push(match fit.restarts.get(1) {
         None => format!("no start led to other values; {} runs were made", fit.evaluations.len()),
         Some((_, cost)) => format!(
