@@ -209,8 +209,9 @@ pub trait ContactDetector<const D: usize>: Send + Sync {
         room.resize(out.len(), f64::INFINITY);
     }
     /// How far the first body of a contact is beyond the second one along a unit direction, m: negative
-    /// where they overlap along it. Of bodies of several parts those count that touch. The default,
-    /// `None`, is of a detector that doesn't know.
+    /// where they overlap along it. Along the normal of a side of either, if that is within 8° of the
+    /// direction and they are further apart along it. Of bodies of several parts those count that touch.
+    /// The default, `None`, is of a detector that doesn't know.
     fn beyond(&self, at: &dyn Geometry<D>, id: ContactId, direction: &Vector<D>) -> Option<f64> {
         let _ = (at, id, direction);
         None

@@ -111,7 +111,17 @@ pub(crate) struct Outline<'a> {
     pub(crate) frame: BodyFrame,
 }
 
+/// The cosine of the angle, 8°, up to which a side faces a direction.
+const FACING: f64 = 0.99;
+
 impl Outline<'_> {
+    /// The normals of its sides, in the world, that are within 8° of a direction.
+    pub(crate) fn facing(&self, direction: &Vector<2>) -> impl Iterator<Item = Vector<2>> {
+        let has_sides = self.corners.len() > 1;
+        let normals = self.normals.iter().filter(move |_| has_sides).map(|normal| self.frame.turned(normal));
+        normals.filter(move |normal| normal.dot(direction) > FACING)
+    }
+
     /// How far it reaches along a unit direction of the world, m.
     pub(crate) fn extent(&self, direction: &Vector<2>) -> f64 {
         let of = |corner: &Vector<2>| direction.dot(&self.frame.point(corner));

@@ -443,7 +443,11 @@ impl ContactDetector<2> for ShapeDetector {
             let (member, part) = (members[k], self.shapes.part_of(members[k], numbers[k])?);
             Some(self.shapes.outline(part, BodyFrame::of(self.shapes.members[member].body, at)))
         });
-        Some(-first?.extent(&-direction) - second?.extent(direction))
+        let (first, second) = (first?, second?);
+        let apart = |along: &Vector<2>| -first.extent(&-along) - second.extent(along);
+        let back = -direction;
+        let of_sides = first.facing(&back).map(|normal| -normal).chain(second.facing(direction));
+        Some(of_sides.map(|normal| apart(&normal)).fold(apart(direction), f64::max))
     }
 
     fn keeps_point(&self, id: ContactId) -> bool {
