@@ -57,6 +57,8 @@ async function ofRun(page, run, problem, isFirst) {
       slider.dispatchEvent(new Event("input"));
     }, Math.round(fraction * (frames - 1)));
     const t = Number(await page.getAttribute("#time-readout", "data-t"));
+    const unread = await page.$$eval("#panel-phi .key b, #panel-x .key b, #panel-y .key b", (all) => all.filter((one) => one.textContent.includes("–")).length);
+    if (unread > 0) problem(`at t = ${t} ${unread} values of coordinates are not told`);
     const row = trajectory.find((one) => Math.abs(one.t - t) < 1e-9);
     if (!row) continue; // rows of the table may be further apart than frames
     for (const body of await page.$$eval("[data-body][data-x]", (all) => all.map(({ dataset }) => ({ ...dataset })))) {
