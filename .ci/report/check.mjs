@@ -10,7 +10,7 @@ import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 import { keyboardWalk, playByKeys, plotsWithoutWords, violations } from "./accessible.mjs";
 import { pageData } from "./columns.mjs";
-import { outOfPicture, unplotted, wrongVerdicts } from "./motion.mjs";
+import { outOfPicture, specksAtFirst, unplotted, wrongVerdicts } from "./motion.mjs";
 import { overlaps } from "./overlaps.mjs";
 import { plotsDrawn, plotsOfRounding } from "./rounding.mjs";
 
@@ -39,7 +39,7 @@ async function anyPage(page, problem) {
   (await plotsWithoutWords(page)).forEach(problem);
   (await page.evaluate(overlaps)).forEach((text) => problem(`texts overlap in ${text}`));
   // Tables that fit a telephone, and those of records: numbers that one doesn't see without scrolling.
-  const cut = await page.$$eval(".fit, #records .scroll", (all) => all.filter((one) => one.scrollWidth > one.clientWidth)
+  const cut = await page.$$eval(".fit, #records .scroll, #reactions .scroll", (all) => all.filter((one) => one.scrollWidth > one.clientWidth)
     .map((one) => one.querySelector("tr").textContent.trim()));
   cut.forEach((text) => problem(`numbers of a table are out of view: ${text}`));
   const sideways = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
@@ -57,6 +57,8 @@ async function ofRun(page, run, problem, isFirst) {
       slider.dispatchEvent(new Event("input"));
     }, Math.round(fraction * (frames - 1)));
     const t = Number(await page.getAttribute("#time-readout", "data-t"));
+    const unread = await page.$$eval("#panel-phi .key b, #panel-x .key b, #panel-y .key b", (all) => all.filter((one) => one.textContent.includes("–")).length);
+    if (unread > 0) problem(`at t = ${t} ${unread} values of coordinates are not told`);
     const row = trajectory.find((one) => Math.abs(one.t - t) < 1e-9);
     if (!row) continue; // rows of the table may be further apart than frames
     for (const body of await page.$$eval("[data-body][data-x]", (all) => all.map(({ dataset }) => ({ ...dataset })))) {
@@ -77,7 +79,9 @@ async function ofRun(page, run, problem, isFirst) {
       problem(`${path} is ${value}, not ${wanted}`);
     }
   }
-  // Of many small bodies the picture opens on a few.
+  const specks = await page.evaluate(specksAtFirst);
+  if (specks !== null) problem(`the picture opens on bodies of ${specks} px`);
+  // Of many small bodies, and of a few that go far, the picture opens on a part.
   await page.$eval("#view-all", (button) => button.click());
   // In the first window at every time there is, in the others at fewer, to save time: their pictures differ in scale only.
   (await page.evaluate(outOfPicture, isFirst ? 1 : 20)).forEach(problem);

@@ -26,6 +26,14 @@ export function outOfPicture(every) {
   return found;
 }
 
+/** The size of the bodies as the page opens, px, if they are too small to be seen; null otherwise. Runs in the page. */
+export function specksAtFirst() {
+  const sizes = [...document.querySelectorAll("#scene [data-body] .body")].map((shape) => shape.getBBox())
+    .map(({ width, height }) => Math.max(width, height)).sort((a, b) => a - b);
+  const size = sizes[Math.floor(sizes.length / 2)];
+  return size < 7 ? size.toFixed(1) : null;
+}
+
 const gravity = 9.81;
 
 /**

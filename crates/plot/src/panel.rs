@@ -11,7 +11,7 @@ use std::fmt::Write;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Band {
-    /// The name, shown at the left.
+    /// The name, shown at the left, or above the row where one of the panel is too long for that.
     pub label: String,
     /// Intervals: from, to, colour.
     pub stretches: Vec<(f64, f64, Colour)>,
@@ -49,6 +49,26 @@ enum Content {
 
 /// Height of a band including the gap to the next.
 const ROW: f64 = 16.0;
+/// What is added for a name above its band.
+const NAME: f64 = 12.0;
+/// Type size of the names of bands.
+const NAME_SIZE: f64 = 10.0;
+
+/// Whether all names have room to the left of their bands; otherwise each stands above its own.
+fn named_beside(bands: &[Band]) -> bool {
+    // Of Helvetica, in parts of the type size.
+    let wide = |c: char| match c {
+        'f' | 'i' | 'j' | 'l' | 'r' | 't' | ' ' | '.' | '-' => 0.3,
+        'm' | 'w' => 0.85,
+        c if c.is_uppercase() => 0.75,
+        _ => 0.56,
+    };
+    bands.iter().all(|band| NAME_SIZE * band.label.chars().map(wide).sum::<f64>() <= LEFT - 6.0)
+}
+
+fn row_height(bands: &[Band]) -> f64 {
+    if named_beside(bands) { ROW } else { ROW + NAME }
+}
 
 impl Panel {
     /// A panel with this y axis.
@@ -187,7 +207,7 @@ impl Panel {
     pub(crate) fn bands_height(&self) -> Option<f64> {
         match &self.content {
             Content::Plot { .. } => None,
-            Content::Bands { bands, .. } => Some(ROW * bands.len() as f64),
+            Content::Bands { bands, .. } => Some(row_height(bands) * bands.len() as f64),
         }
     }
 
@@ -366,15 +386,17 @@ fn draw_grid(svg: &mut String, frame: &Frame, theme: Theme, y: &Axis) -> String 
 }
 
 fn draw_bands(svg: &mut String, frame: &Frame, theme: Theme, bands: &[Band]) {
+    let (height, beside) = (row_height(bands), named_beside(bands));
     for (k, band) in bands.iter().enumerate() {
-        let top = frame.top + ROW * k as f64;
+        let top = frame.top + height * k as f64;
+        let (x, anchor) = if beside { (LEFT - 5.0, "end") } else { (LEFT, "start") };
         let _ = writeln!(
             svg,
-            "<text x=\"{:.2}\" y=\"{:.2}\" text-anchor=\"end\" font-size=\"10\">{}</text>",
-            LEFT - 5.0,
+            "<text x=\"{x:.2}\" y=\"{:.2}\" text-anchor=\"{anchor}\" font-size=\"{NAME_SIZE}\">{}</text>",
             top + 11.0,
             escaped(&band.label)
         );
+        let top = top + height - ROW;
         for (from, to, colour) in &band.stretches {
             let (a, b) = (frame.px(*from), frame.px(*to));
             if !(a.is_finite() && b >= a) {
@@ -466,6 +488,27 @@ mod tests {
     fn a_line_breaks_where_it_is_not_finite() {
         let points = [(0.0, 0.0), (1.0, 1.0), (2.0, f64::NAN), (3.0, 2.0)];
         assert_eq!(line_path(&points, |x| x, |y| y), "M0.00 0.00L1.00 1.00M3.00 2.00");
+    }
+
+    #[test]
+    fn a_name_too_long_for_the_margin_stands_above_its_band() {
+        let places = |names: [&str; 2]| -> Vec<(f64, String)> {
+            let bands = names.map(|name| Band::new(name, vec![(0.0, 1.0, Colour::Series(0))]));
+            let panel = Panel::bands(bands.to_vec(), [(Colour::Series(0), "stick")]);
+            let svg = Figure::new("f", "t", Axis::between("x", 0.0, 1.0)).panel(panel).to_svg();
+            let named = |name: &&str| {
+                let text = svg.split("<text ").find(|text| text.contains(&format!(">{name}</text>"))).unwrap();
+                let part = |key: &str| text.split(&format!("{key}=\"")).nth(1).unwrap().split('"').next().unwrap();
+                (part("x").parse().unwrap(), part("text-anchor").to_owned())
+            };
+            names.iter().map(named).collect()
+        };
+        assert_eq!(
+            places(["bottom left", "bottom right"]),
+            [(LEFT - 5.0, "end".to_owned()), (LEFT - 5.0, "end".to_owned())]
+        );
+        let long = places(["hexagon 2 corner 1", "right"]);
+        assert_eq!(long, [(LEFT, "start".to_owned()), (LEFT, "start".to_owned())]);
     }
 
     #[test]

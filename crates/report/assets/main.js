@@ -50,6 +50,10 @@
     say("phi", rule("turn"));
     plots.add({ id: "omega", title: "Angular velocity ω", unit: "rad/s", least: 2e-3, height: 160, series: bands(curves.t, crowd.omega, 1) });
   }
+  /** What is pale first, then for each point the curve that has its name, in the order of the points. */
+  const overTheRaw = (lines, means) =>
+    [...lines.filter(({ raw }) => raw), ...[...lines.filter(({ raw }) => !raw), ...means].sort((a, b) => a.index - b.index)];
+
   /** Where the peaks of impacts would dwarf all else: the size to cut them at. */
   function cutOf(series, least) {
     const sizes = series.flatMap(({ y }) => y.map(Math.abs).filter((f) => f > least)).sort((a, b) => a - b);
@@ -85,7 +89,7 @@
       for (const line of lines) line.raw = means.some(({ index }) => index === line.index);
       const least = 1e-6 * strongest * factor;
       plots.add({
-        id: `${key}-${k}`, contact: k, title: title + suffix, unit: `${prefix}N`, series: [...lines, ...means], cut: cutOf(lines, least), floor: 0, least, height: 150,
+        id: `${key}-${k}`, contact: k, title: title + suffix, unit: `${prefix}N`, series: overTheRaw(lines, means), cut: cutOf(lines, least), floor: 0, least, height: 150,
       });
       if (means.length) {
         htmlElement("p", "note", `Pale: raw, the mean of each step or of a few. Strong: the mean over ${forces.window}.`, byId(`panel-${key}-${k}`));
@@ -150,9 +154,13 @@
     slider.setAttribute("aria-valuetext", text);
     byId("time-readout").textContent = text;
     byId("time-readout").dataset.t = t;
-    byId("scene-readout").textContent = (crowd ? [] : readOut)
-      .map(([name, k]) => `${several ? `${name}: ` : ""}φ = ${hundredths(frames.blocks[k].phi[frame] * degrees)}°`)
-      .join(" · ");
+    const angles = (crowd ? [] : readOut)
+      .map(([name, k]) => `${several ? `${name}: ` : ""}φ = ${hundredths(frames.blocks[k].phi[frame] * degrees)}°`);
+    byId("scene-readout").replaceChildren();
+    angles.forEach((text, k) => {
+      byId("scene-readout").append(k ? " · " : "");
+      htmlElement("span", "", text, byId("scene-readout"));
+    });
     // In motion an impact is ringed for a moment, at rest only in the frame that it led to.
     scene.draw(position, clock ? 0.25 * factor() : 0);
     if (!clock) scene.root.setAttribute("aria-label", spoken.picture(frame));
@@ -363,13 +371,13 @@
     if (wanted.has("t") && Number.isFinite(Number(wanted.get("t")))) seek(Number(wanted.get("t")));
   }
 
-  /** The body that the picture opens on, if it doesn't open on all. */
+  /** What to say of the picture if it doesn't open on all. */
   let near = null;
   relayout();
   scene.forces(how.value);
   exaggerate(scene.suitable(factors));
   near = scene.closeUp();
-  if (near !== null) byId("scene-keys").prepend(`Opened close to ${near}; “Show all” shows all ${scenery.blocks.length} bodies. `);
+  if (near !== null) byId("scene-keys").prepend(near);
   fromAddress();
   window.addEventListener("hashchange", fromAddress);
   let lastWidth = document.documentElement.clientWidth;

@@ -21,7 +21,8 @@ const plots = (() => {
       return row;
     }
     const fold = htmlElement("details", "again", undefined, row);
-    htmlElement("summary", "", `Curves as in “${earlier.title}”: ${portrait ? "names" : "values"}`, fold);
+    const summary = htmlElement("summary", "", `Curves as in “${earlier.title}”`, fold);
+    htmlElement("span", "unfolds", `: ${portrait ? "names" : "values"}`, summary);
     return fold;
   }
 

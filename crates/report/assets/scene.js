@@ -157,6 +157,8 @@ const scene = (() => {
   /** The view that shows everything at all times. */
   let whole = view;
   let followed = null;
+  /** Whether the picture goes up and down with what it follows, too. */
+  let followsUp = true;
 
   function layout() {
     width = root.parentElement.clientWidth;
@@ -164,7 +166,7 @@ const scene = (() => {
     const [across, up] = [Math.max(box[2] - box[0], 1e-9), Math.max(box[3] - box[1], 1e-9)];
     const [inner, tallest] = [width - padding.left - padding.right, Math.min(420, 0.62 * window.innerHeight + 60)];
     const scale = Math.min(inner / across, (Math.max(260, tallest) - padding.top - padding.bottom) / up);
-    height = Math.max(230, Math.ceil(padding.top + padding.bottom + up * scale));
+    height = Math.max(isFarFlung(scale) ? 320 : 230, Math.ceil(padding.top + padding.bottom + up * scale));
     whole = { x: (box[0] + box[2]) / 2, y: box[1], scale };
     view = { ...whole };
     setAll(root, { viewBox: `0 0 ${width} ${height}`, width, height });
@@ -199,6 +201,7 @@ const scene = (() => {
   /** Keeps the bodies where they are in the picture, or lets them move through it. */
   function follow(on) {
     followed = on ? middleOf(frame) : null;
+    followsUp = true;
     if (!on) return look(whole.x, whole.y, whole.scale);
     // As large as they are, with as much around them again.
     const box = [Infinity, Infinity, -Infinity, -Infinity];
@@ -212,23 +215,58 @@ const scene = (() => {
     return look((box[0] + box[2]) / 2, box[1] - 0.05 * (box[3] - box[1]), scale);
   }
 
-  /** Bodies of fewer pixels are hardly seen; the picture then opens closer, with bodies of this many. */
-  const [smallest, seen] = [7, 40];
+  /** Bodies of fewer pixels are hardly seen, those of a few bodies that go far not to turn; the picture then opens closer, with bodies of this many. */
+  const [smallest, smallestOfFew, seen] = [7, 20, 40];
 
-  /** The body that the picture opens on, where many that stand far apart would be specks in a picture of all. */
+  const free = scenery.blocks.map((_, k) => k).filter((k) => !scenery.blocks[k].driven);
+  const middle = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
+  const size = free.length ? 2 * middle(free.map((k) => scenery.blocks[k].reach)) : 0;
+
+  /** Whether a few bodies go so far that a picture of all shows them as specks. */
+  const isFarFlung = (scale) => free.length > 0 && free.length <= 4 && size * scale < smallestOfFew
+    && Math.max(...free.map((k) => range(frames.blocks[k].x))) * scale > 0.4 * width;
+  const range = (values) => values.reduce((most, x) => Math.max(most, x), -Infinity) - values.reduce((least, x) => Math.min(least, x), Infinity);
+
+  /** Opens the picture closer where one of all would show specks, and returns what to say of it; null where it shows all. */
   function closeUp() {
-    const free = scenery.blocks.map((_, k) => k).filter((k) => !scenery.blocks[k].driven);
+    if (isFarFlung(whole.scale)) return nearFew();
     if (free.length < 3) return null;
-    const size = 2 * free.map((k) => scenery.blocks[k].reach).sort((a, b) => a - b)[Math.floor(free.length / 2)];
     const places = free.map((k) => truePose(k, 0).x);
     const apart = Math.max(...places) - Math.min(...places);
     // What has only one body fly off isn't seen better from near.
     if (size * whole.scale >= smallest || apart * whole.scale < 0.5 * width) return null;
-    const moves = (k) => Math.hypot(frames.blocks[k].x[times.length - 1] - frames.blocks[k].x[0], frames.blocks[k].y[times.length - 1] - frames.blocks[k].y[0]);
-    const chosen = crowd ? crowd.distances.chosen[0] : free.reduce((best, k) => (moves(k) > moves(best) ? k : best));
+    const chosen = crowd ? crowd.distances.chosen[0] : free.reduce((best, k) => (wayOf(k) > wayOf(best) ? k : best));
     const { x, y } = truePose(chosen, 0);
     look(x, y - 0.6 * size, seen / size);
-    return scenery.blocks[chosen].name;
+    return `Opened close to ${scenery.blocks[chosen].name}; “Show all” shows all ${scenery.blocks.length} bodies. `;
+  }
+
+  /** How far a body is at the end from where it began. */
+  function wayOf(k) {
+    const { x, y } = frames.blocks[k];
+    return Math.hypot(x[x.length - 1] - x[0], y[y.length - 1] - y[0]);
+  }
+
+  /** Of a few bodies that go far: follows them if they go together, or opens where they start. */
+  function nearFew() {
+    const [inner, tall] = [width - padding.left - padding.right, height - padding.top - padding.bottom];
+    const poses = free.map((k) => truePose(k, 0));
+    const box = ["x", "y"].map((axis) => poses.map((pose) => pose[axis])).map((all) => [Math.min(...all), Math.max(...all)]);
+    const [across, up] = box.map(([low, high]) => high - low + 2 * size);
+    const ways = free.map(wayOf);
+    const together = Math.min(...ways) > 0.5 * Math.max(...ways);
+    const closest = Math.min(seen / size, inner / across);
+    // With all heights in the picture, so that the ground stays in view, if the bodies are still seen.
+    const all = bounds();
+    const level = Math.min(closest, tall / (all[3] - all[1]));
+    const upright = level * size >= smallestOfFew;
+    const scale = upright ? level : Math.min(closest, tall / up);
+    const x = together ? middleOf(0)[0] : (box[0][0] + box[0][1]) / 2;
+    followed = together ? middleOf(frame) : null;
+    followsUp = !upright;
+    look(together ? followed[0] : x, upright ? whole.y : (together ? followed[1] : box[1][0]) - 0.5 * tall / scale, scale);
+    return together ? "The picture follows the bodies; “Show all” shows the whole way. "
+      : "Opened where the bodies start; “Show all” shows the whole way. ";
   }
 
   /** Where the picture is in all of it: a line at its top. */
@@ -579,7 +617,7 @@ const scene = (() => {
     frame = at;
     if (followed) {
       const now = middleOf(at);
-      const by = [now[0] - followed[0], now[1] - followed[1]];
+      const by = [now[0] - followed[0], followsUp ? now[1] - followed[1] : 0];
       // Less than a tenth of a pixel is not seen to move.
       if (Math.hypot(...by) * view.scale > 0.1) {
         followed = now;

@@ -45,7 +45,7 @@ pub use made_energy::ENERGY_MADE;
 pub use page::{Animation, AnimationError, AnimationFormat, AnimationInfo, animate};
 pub use page::{
     HalfCycle, Joint, PageRecorder, SIDE_BY_SIDE, STYLE, ThrustLine, VTK_SERIES, VtkRecorder, document, escaped,
-    figures, for_any_width, half_cycles, record_figures, record_page, render, spectrum_periods, thrust_lines,
+    figures, for_any_width, half_cycles, record_figures, record_page, render, spectrum_periods, thrust_lines, unbroken,
 };
 pub use recorder::{ImpactRow, Record, Recorder};
 pub use results::{FILES, Reserved, Results, ResultsError, write_whole};

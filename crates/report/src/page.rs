@@ -37,7 +37,7 @@ pub use animation::{Animation, AnimationError, AnimationFormat, AnimationInfo, a
 pub use chain::{Joint, ThrustLine, thrust_lines};
 pub use figures::figures;
 pub(crate) use figures::is_pair_figure;
-pub use html::{STYLE, document, render};
+pub use html::{STYLE, document, render, unbroken};
 pub(crate) use recorder::Kept;
 pub use recorder::PageRecorder;
 pub use rocking::{HalfCycle, half_cycles};

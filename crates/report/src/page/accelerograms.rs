@@ -99,8 +99,16 @@ pub(super) fn spectra(records: &[Arc<RecordScene>]) -> Option<Figure> {
 }
 
 /// The name of a record in a legend; empty for a single one.
-fn name(records: &[Arc<RecordScene>], k: usize) -> &str {
-    if records.len() > 1 { &records[k].path } else { "" }
+fn name(records: &[Arc<RecordScene>], k: usize) -> String {
+    if records.len() > 1 { in_words(&records[k].path) } else { String::new() }
+}
+
+/// What a record moves, of a table of the scene such as `ground.motion.x`: ground x, as in other legends.
+fn in_words(path: &str) -> String {
+    match path.strip_prefix("beam.").unwrap_or(path).rsplit_once(".motion.") {
+        Some((of, axis)) => format!("{of} {axis}"),
+        None => path.to_owned(),
+    }
 }
 
 /// The points of a curve, evenly spaced by `dt` (s): of a long one the least and the largest value
@@ -154,8 +162,8 @@ pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary],
     if named {
         html.push_str("<thead><tr><th scope=\"col\">Record</th>");
         for of in summaries {
-            let (motion, file) = (escaped(&of.motion), escaped(&of.file));
-            let _ = write!(html, "<th scope=\"col\" data-record=\"{motion}\">{motion}<br><small>{file}</small></th>");
+            let (motion, name, file) = (escaped(&of.motion), escaped(&in_words(&of.motion)), escaped(&of.file));
+            let _ = write!(html, "<th scope=\"col\" data-record=\"{motion}\">{name}<br><small>{file}</small></th>");
         }
         html.push_str("</tr></thead>\n");
     }
@@ -182,6 +190,12 @@ pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary],
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_record_is_named_by_what_it_moves() {
+        assert_eq!(in_words("ground.motion.x"), "ground x");
+        assert_eq!(in_words("beam.table.motion.y"), "table y");
+    }
 
     #[test]
     fn a_long_curve_is_thinned_without_losing_its_extremes() {

@@ -226,8 +226,9 @@ impl Curves {
         self.stride > 2
     }
 
-    /// The values of a quantity at some times in ascending order; none at a time within a bucket, of which only the extremes are known.
-    pub(crate) fn values(&self, column: usize, times: impl IntoIterator<Item = f64>) -> Vec<Option<f64>> {
+    /// The values of a quantity at some times in ascending order; none at a time within a bucket, of which only the extremes are known,
+    /// unless these differ by no more than `within`.
+    pub(crate) fn values(&self, column: usize, times: impl IntoIterator<Item = f64>, within: f64) -> Vec<Option<f64>> {
         let columns = self.start.1.len();
         let mut from = 0;
         let value = |t: f64| {
@@ -242,6 +243,7 @@ impl Curves {
                 t if t == bucket.last => Some(extremes.end),
                 // Of up to two steps both values are known.
                 t if t == bucket.first && bucket.steps <= 2 => Some(extremes.in_order()[0]),
+                _ if extremes.high.1 - extremes.low.1 <= within => Some(0.5 * (extremes.low.1 + extremes.high.1)),
                 _ => None,
             }
         };
@@ -315,10 +317,12 @@ mod tests {
         assert!(curves.is_thinned() && curves.curve(0)[1..].iter().all(|x| x.abs() == 7.0));
         let times = [0.0, 5.0, 8.0, 16.0, 24.0, 32.0, 33.0];
         let known = Some(0.5);
-        assert_eq!(curves.values(0, times), [known, None, known, known, known, known, None]);
+        assert_eq!(curves.values(0, times, 0.0), [known, None, known, known, known, known, None]);
+        // Known to 14 all the same: the mean of the extremes.
+        assert_eq!(curves.values(0, [5.0], 14.0), [Some(0.0)]);
         let short = run(4, 7, ringing);
         let all = (0..=7).map(f64::from);
-        assert_eq!(short.values(0, all.clone()), all.map(|t| Some(ringing(t))).collect::<Vec<_>>());
+        assert_eq!(short.values(0, all.clone(), 0.0), all.map(|t| Some(ringing(t))).collect::<Vec<_>>());
     }
 
     #[test]

@@ -256,7 +256,7 @@ impl Plots<'_> {
                 let scaled = |mean: Vec<f64>| {
                     borders.iter().copied().zip(mean.into_iter().map(|y| factor * y)).collect::<Vec<_>>()
                 };
-                means.extend(mean.map(|mean| Series::line(label, scaled(mean)).number(point)));
+                means.push(mean.map(|mean| Series::line(label, scaled(mean)).number(point)));
                 tangential.push(step(&forces.tangential, sideways, label));
                 bands.push(Band::new(label, stretches(&borders, &forces.state)));
             }
@@ -276,13 +276,13 @@ impl Plots<'_> {
                 let (range, cut) = cut(&lines, least, &unit);
                 let name = (scenery.contacts.len() > 1)
                     .then(|| format!("{} on {}", scenery.blocks[contact.block].name, contact.surface));
-                let meant = (what == "Normal" && !means.is_empty())
+                let meant = (what == "Normal" && means.iter().any(Option::is_some))
                     .then(|| format!("pale: raw; mean over {}", with_digits(window, "s", 3)));
                 let note = [name, meant, cut].into_iter().flatten().collect::<Vec<_>>().join("; ");
                 let y = cut_axis(&format!("{what} force ({unit})"), range, &lines, least);
                 let note = Some(note).filter(|note| !note.is_empty());
                 if what == "Normal" {
-                    lines.append(&mut means);
+                    lines = over_the_raw(lines, std::mem::take(&mut means));
                 }
                 panels.push(self.marked(Panel::new(y).with(lines).telling_apart(), Some(pair)).note(note));
             }
@@ -291,6 +291,22 @@ impl Plots<'_> {
         }
         self.by_pairs("contact_forces", "Contact forces on the blocks over time", pairs)
     }
+}
+
+/// Raw curves that have a mean first, as pale background; then for each point the curve that has its name, in the order of the points.
+fn over_the_raw(raw: Vec<Series>, means: Vec<Option<Series>>) -> Vec<Series> {
+    let (mut pale, mut named) = (Vec::new(), Vec::new());
+    for (raw, mean) in raw.into_iter().zip(means) {
+        match mean {
+            Some(mean) => {
+                pale.push(raw);
+                named.push(mean);
+            }
+            None => named.push(raw),
+        }
+    }
+    pale.append(&mut named);
+    pale
 }
 
 /// A panel with its critical angles named if one of them is on this axis.

@@ -50,6 +50,7 @@ pub fn document(title: &str, subtitle: &str, style: &str, main: &str) -> String 
 pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> String {
     let values = Numbers::of(summary);
     let panels = Panels::of(recorder);
+    let smallest = recorder.scenery.blocks.iter().map(|block| block.reach).fold(f64::INFINITY, f64::min);
     let script = format!("(() => {{\n\"use strict\";\n{}}})();\n", SCRIPTS.concat());
     let parts = BTreeMap::from([
         ("title", escaped(&summary.title)),
@@ -59,7 +60,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("verdict", verdict(summary)),
         ("subtitle", subtitle(summary)),
         ("warnings", warnings(summary)),
-        ("tiles", tiles::tiles(&values, summary)),
+        ("tiles", tiles::tiles(&values, summary, smallest)),
         ("residual", scientific(summary.energy.largest_residual)),
         ("notdrawn", not_drawn(&panels)),
         ("shapes", beams::shapes(recorder)),
@@ -68,7 +69,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("thrust", thrust::section(recorder)),
         ("rocking", rocking::rocking(&half_cycles(recorder, summary), recorder, summary.dt)),
         ("model", model::model(summary)),
-        ("numbers", tiles::numbers(&values)),
+        ("numbers", tiles::numbers(&values, summary)),
         ("settings", escaped(scene_toml)),
     ]);
     filled(TEMPLATE, &parts)
@@ -93,7 +94,7 @@ fn verdict(summary: &Summary) -> String {
         // The terminal has a title before it, the page has not.
         let part = &if number == 0 { capitalised(part) } else { part.to_owned() };
         // A number stays with its name and its unit.
-        let part = escaped(part).replace(" = ", "\u{a0}=\u{a0}").replace(" ms", "\u{a0}ms");
+        let part = unbroken(&escaped(part));
         if number % 2 == 1 {
             _ = write!(html, "‘<span class=\"name\">{part}</span>’")
         } else {
@@ -105,6 +106,30 @@ fn verdict(summary: &Summary) -> String {
     }
     html
 }
+
+/// With a number kept in one line with its name and its unit.
+#[must_use]
+pub fn unbroken(text: &str) -> String {
+    let mut joined = String::with_capacity(text.len());
+    let mut words = text.split(' ').peekable();
+    while let Some(word) = words.next() {
+        joined.push_str(word);
+        let Some(next) = words.peek() else { break };
+        let number = word.chars().last().is_some_and(|last| last.is_ascii_digit() || SUPERSCRIPTS.contains(last));
+        let unit = next.trim_end_matches([';', ',', '.', ':', ')']);
+        let keep = word == "=" || *next == "=" || word == "×" || *next == "×" || (number && UNITS.contains(&unit));
+        joined.push(if keep { '\u{a0}' } else { ' ' });
+    }
+    joined
+}
+
+const SUPERSCRIPTS: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+
+/// Units that stand alone behind a number in sentences.
+const UNITS: [&str; 22] = [
+    "%", "s", "ms", "µs", "ns", "km", "m", "cm", "mm", "µm", "nm", "pm", "m/s", "rad", "N", "kN", "mN", "J", "kJ",
+    "mJ", "Pa", "MPa",
+];
 
 /// With a capital letter at the start.
 fn capitalised(text: &str) -> String {
@@ -126,14 +151,15 @@ fn subtitle(summary: &Summary) -> String {
     let ended = serde_json::to_value(summary.ended).unwrap_or_default();
     let ended = ended.as_str().unwrap_or_default().to_owned();
     let class = if ["complete", "stopped"].contains(&ended.as_str()) { "" } else { " class=\"bad\"" };
-    format!(
+    let text = format!(
         "{} · {} steps of {} · t = {} · <span{class}>{ended}</span> · teeter {}",
         escaped(summary.scheme),
         summary.steps,
         with_prefix(summary.dt, "s"),
         with_digits(summary.steps as f64 * summary.dt, "s", 6),
         escaped(summary.version)
-    )
+    );
+    unbroken(&text).replace(" steps of ", "\u{a0}steps of ")
 }
 
 fn warnings(summary: &Summary) -> String {
@@ -159,7 +185,7 @@ fn warnings(summary: &Summary) -> String {
 /// What isn't drawn, and why; empty if all is.
 fn not_drawn(panels: &Panels) -> String {
     let text = content::told(&panels.left_out);
-    if text.is_empty() { text } else { format!("<p id=\"not-drawn\" class=\"note\">{}</p>", escaped(&text)) }
+    if text.is_empty() { text } else { format!("<p id=\"not-drawn\" class=\"note\">{}</p>", unbroken(&escaped(&text))) }
 }
 
 /// A number with three digits and the prefix that suits it, such as `9.04 µm`.
@@ -180,7 +206,7 @@ fn scientific(x: f64) -> String {
     match text.split_once('e') {
         Some((digits, "0")) => digits.replace('-', "\u{2212}"),
         Some((digits, power)) => {
-            format!("{} × 10<sup>{}</sup>", digits.replace('-', "\u{2212}"), power.replace('-', "\u{2212}"))
+            format!("{}\u{a0}×\u{a0}10<sup>{}</sup>", digits.replace('-', "\u{2212}"), power.replace('-', "\u{2212}"))
         }
         None => text,
     }
@@ -212,12 +238,21 @@ mod tests {
     }
 
     #[test]
+    fn a_number_stays_in_one_line_with_its_name_and_its_unit() {
+        let text = "rests at t = 1.2 ms; off by 3 % (4 × 10⁻⁵ m), 5 steps of 1 s";
+        assert_eq!(
+            unbroken(text).replace('\u{a0}', "~"),
+            "rests at t~=~1.2~ms; off by 3~% (4~×~10⁻⁵~m), 5 steps of 1~s"
+        );
+    }
+
+    #[test]
     fn numbers_are_shown_with_the_prefix_that_suits() {
         assert_eq!(with_prefix(9.043e-6, "m"), "9.04 µm");
         assert_eq!(with_prefix(1e-4, "s"), "100 µs");
         assert_eq!(with_prefix(0.0, "m"), "0 m");
         assert_eq!(with_prefix(1e-3, "s"), "1 ms");
-        assert_eq!(with_prefix(3e-20, "m"), "3.0 × 10<sup>\u{2212}20</sup> m");
+        assert_eq!(with_prefix(3e-20, "m"), "3.0\u{a0}×\u{a0}10<sup>\u{2212}20</sup> m");
         assert_eq!(scientific(2.5), "2.5");
     }
 }

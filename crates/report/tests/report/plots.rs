@@ -134,7 +134,7 @@ fn every_probe_has_its_curve_unless_it_is_rounding() {
         deflections["series"].as_array().unwrap().iter().map(|series| series["label"].as_str().unwrap()).collect();
     // The right end is a support: it doesn't move.
     assert_eq!(labels, ["midspan, 300 mm", "150 mm", "450 mm"]);
-    assert!(run.html.contains("w at the probe 600 mm (0)"));
+    assert!(run.html.contains("w at the probe 600\u{a0}mm (0)"));
     assert!(run.html.contains("id=\"shapes\""));
     let names: Vec<String> = figures(&run.page).into_iter().map(|(file, _)| file).collect();
     assert!(names.iter().any(|file| file == "shapes.svg"), "{names:?}");

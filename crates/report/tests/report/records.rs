@@ -72,7 +72,7 @@ fn two_records_share_their_figures_and_a_scene_without_has_none() {
     let two = run("two", "motion = { x = { record = 'a.csv' }, y = { record = 'b.csv', scale = 0.1 } }");
     assert_eq!(two.summary["records"].as_array().unwrap().len(), 2);
     let (_, svg) = two.figures.iter().find(|(file, _)| file == "records.svg").unwrap();
-    assert!(svg.contains("ground.motion.x") && svg.contains("ground.motion.y"));
+    assert!(svg.contains(">ground x<") && svg.contains(">ground y<"));
     let none = run("none", "");
     assert!(none.summary.get("records").is_none() && !none.html.contains("id=\"records\""));
     assert!(none.figures.iter().all(|(file, _)| file != "records.svg" && file != "spectra.svg"));

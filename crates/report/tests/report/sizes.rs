@@ -39,7 +39,7 @@ fn a_chip_of_a_micrometre_has_axes_that_one_can_read() {
         run.html.contains("the total energy is 2.0") && run.html.contains("e-19 J, and 2.0"),
         "energies of 1e-19 J"
     );
-    assert!(run.html.contains("· t = 3 ms ·"));
+    assert!(run.html.contains("· t\u{a0}=\u{a0}3\u{a0}ms ·"));
 }
 
 #[test]
@@ -107,6 +107,50 @@ fn rounding_is_no_loss_of_energy() {
     let tile = &drop[drop.find("data-summary=\"energy.lost\"").unwrap()..];
     assert!(tile[..tile.find("</dd>").unwrap()].ends_with("mJ") || tile[..tile.find("</dd>").unwrap()].ends_with(" J"));
     assert!(!tile[..tile.find("</dd>").unwrap()].ends_with(">0 J"), "what is lost is told");
+}
+
+/// What the tile of a number shows; none if there is no such tile.
+fn tile<'a>(html: &'a str, path: &str) -> Option<&'a str> {
+    let tile = &html[html.find(&format!("data-summary=\"{path}\""))?..];
+    Some(&tile[tile.find('>')? + 1..tile.find("</dd>")?])
+}
+
+#[test]
+fn rounding_is_no_depth_and_what_does_not_rock_has_no_share_of_its_critical_angle() {
+    let text =
+        std::fs::read_to_string(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/incline.toml"));
+    let html = &run("still-at-depth", &text.unwrap()).html;
+    assert_eq!((tile(html, "max_penetration"), tile(html, "max_phi_over_alpha")), (Some("0 m"), None));
+    let rocks = &scenario("free-rocking-on-ground").html;
+    assert!(tile(rocks, "max_phi_over_alpha").is_some_and(|share| share.starts_with("0.39")));
+}
+
+/// A block dropped askew: no corner stands while the other one comes down.
+const DROPPED: &str = "time = { end = '1.5 s', step = '200 us' }\nground = {}\nmaterial.oak.density = '700 kg/m^3'\n\
+    block.box = { material = 'oak', width = '20 cm', height = '10 cm', depth = '10 cm', position = ['0 cm', '40 cm'], angle = '20 deg' }\n\
+    contact.base = { between = ['box', 'ground'], friction = 0.4, restitution = 0.5 }\n";
+
+#[test]
+fn a_column_of_half_cycles_without_a_value_is_left_out() {
+    let heads = |html: &str| {
+        let table = &html[html.find("id=\"rocking-title\"").unwrap()..];
+        table[..table.find("</thead>").unwrap()].matches("<th ").count()
+    };
+    assert_eq!(heads(&run("dropped", DROPPED).html), 3, "time, peak, and their ratio");
+    assert_eq!(heads(&scenario("free-rocking-on-ground").html), 7);
+}
+
+#[test]
+fn a_block_that_rocks_on_ground_going_far_has_its_portrait_in_the_angle() {
+    // By 10 m with the ground, and to and fro by 4 degrees on it.
+    let text = "time = { end = '2 s', step = '1 ms' }\nground.motion = { velocity = ['5 m/s', '0 m/s'], signal = 'even' }\n\
+        signal.even.shape = 'constant'\nmaterial.marble.density = '2700 kg/m^3'\n\
+        block.slab = { material = 'marble', width = '12.7 cm', height = '49.7 cm', depth = '10 cm', on = 'ground', at = '0 cm', \
+        tilt = '4 deg', velocity = ['5 m/s', '0 m/s'] }\ncontact.base = { between = ['slab', 'ground'], friction = 2.0 }\n";
+    let page = data(&run("carried", text).html);
+    let portraits: Vec<&str> =
+        page["portraits"].as_array().unwrap().iter().map(|one| one["id"].as_str().unwrap()).collect();
+    assert_eq!(portraits, ["phase"]);
 }
 
 /// Height of a figure, mm.

@@ -31,6 +31,9 @@ const IMPROBABLE: f64 = 3.0;
 /// Another minimum with a sum of squares up to so many times the least is told.
 const HARDLY_WORSE: f64 = 2.0;
 
+/// Residuals of up to this many times the noise are taken to be noise.
+const DESCRIBED: f64 = 1.5;
+
 /// An interval whose sides differ by more than this share of its width is told by its ends.
 const UNEVEN: f64 = 0.1;
 
@@ -243,11 +246,12 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
             short(cost.sqrt())
         ));
     }
-    let left = format!("the residuals are {} times the noise of the samples", short(fit.cost.sqrt()));
-    texts.push(if fit.cost.sqrt() > 1.5 {
-        format!("warning: {left}: the model doesn’t describe all of the motion, and the errors are only as good as the model")
+    let left = fit.cost.sqrt();
+    let told = format!("the residuals are {} times the noise of the samples", short(left));
+    texts.push(if left > DESCRIBED {
+        format!("warning: {told}: the model doesn’t describe all of the motion, and the errors are only as good as the model")
     } else {
-        left
+        told
     });
     if is_misfit(fit) {
         texts.push(format!(
@@ -281,10 +285,25 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
     texts
 }
 
-/// The name of an estimate as HTML: keys as code, what is fitted with them in words.
+/// The name of an estimate as HTML: keys as code, broken where their parts end, what is fitted with them in words.
 fn name_of(fit: &Fit, number: usize) -> String {
     let name = escaped(&fit.estimates[number].name);
-    if number < fit.keys.len() { format!("<code>{name}</code>") } else { name }
+    if number < fit.keys.len() {
+        format!("<code>{}</code>", name.replace('.', ".<wbr>").replace('_', "_<wbr>"))
+    } else {
+        name
+    }
+}
+
+/// What came of the fit, at the head of the page.
+fn headline(fit: &Fit) -> String {
+    let left = fit.cost.sqrt();
+    let told = if left > DESCRIBED {
+        "The scene doesn’t describe all of the measured motion: what is left is"
+    } else {
+        "The fitted scene describes the measured motion: what is left is"
+    };
+    format!("{told} {} times the noise of the samples", short(left))
 }
 
 /// The page.
@@ -302,7 +321,8 @@ pub fn page(fit: &Fit, title: &str, names: [&str; 3]) -> Result<String, AxisErro
     });
     let _ = write!(
         html,
-        "<section class=\"panel\"><h2>Fitted values</h2>\n{}{}</section>\n",
+        "<p class=\"headline\">{}</p>\n<section class=\"panel\"><h2>Fitted values</h2>\n{}{}</section>\n",
+        headline(fit),
         html_table(&["Fitted", "Value", "Standard error", "95 % interval"], rows),
         html_list(&sentences(fit)[fit.estimates.iter().filter(|found| found.value.is_finite()).count()..])
     );

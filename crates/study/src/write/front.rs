@@ -22,7 +22,8 @@ pub(super) const STYLE: &str = "\
 #choice { flex-wrap: wrap; gap: .3rem 1.1rem; margin: .5rem 0; padding: 0; border: 0; }\n\
 #choice legend { float: left; padding: 0; margin-right: .2rem; }\n\
 #choice label { white-space: nowrap; }\n\
-#front figcaption { display: block; color: var(--muted); font-size: .8125rem; max-width: 62rem; margin: .4rem auto; }\n";
+#front figcaption { display: block; color: var(--muted); font-size: .8125rem; max-width: 62rem; margin: .4rem auto; }\n\
+@media print { #front .wide { display: none; } #front .narrow { display: block; } #front .narrow svg { max-width: 10cm; } }\n";
 
 /// Writes the section with the figures of all quantities that the scene has, one of them shown.
 pub(super) fn section(html: &mut String, study: &Tradeoff) -> Result<(), AxisError> {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 use teeter_plot::escaped;
+use teeter_report::unbroken;
 
 /// Characters beside each other that a table has room for on a telephone.
 const NARROW: usize = 44;
@@ -66,7 +67,7 @@ pub(crate) fn with_code(text: &str) -> String {
     let mut html = String::new();
     for (number, piece) in text.split('`').enumerate() {
         let piece = escaped(piece);
-        html.push_str(&if number % 2 == 1 { format!("<code>{piece}</code>") } else { piece });
+        html.push_str(&if number % 2 == 1 { format!("<code>{piece}</code>") } else { unbroken(&piece) });
     }
     html
 }

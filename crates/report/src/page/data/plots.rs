@@ -4,7 +4,7 @@ use super::column::{Column, SEEN, SEEN_BELOW_PEAKS};
 use super::{digits, time};
 use crate::page::means;
 use crate::page::panels::{Line, Panels, Place};
-use crate::page::recorder::PageRecorder;
+use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, BLOCK_FRAME, PageRecorder};
 use crate::with_digits;
 use serde::Serialize;
 use teeter_integrator::ContactState;
@@ -49,7 +49,13 @@ impl SeriesData {
         if let Some(source) = line.of.filter(|_| panels.curves.is_thinned()) {
             let pictures = || recorder.kept.frames.rows().map(|(t, _)| t);
             // More of them than are drawn.
-            let values = recorder.kept.curves.values(source.column, pictures());
+            let values = match place_in_picture(recorder, source.column) {
+                Some(place) => recorder.kept.frames.rows().map(|(_, row)| Some(row[place])).collect(),
+                None => {
+                    let most = line.y.iter().filter(|y| y.is_finite()).fold(0.0, |most: f64, y| most.max(y.abs()));
+                    recorder.kept.curves.values(source.column, pictures(), AS_GOOD * most / source.factor.abs())
+                }
+            };
             let drawn = linear(&panels.curves.times(), &line.y, pictures());
             for (picture, (value, drawn)) in values.into_iter().zip(drawn).enumerate() {
                 let value = value.map(|value| source.drawn(value));
@@ -67,6 +73,17 @@ impl SeriesData {
         Self { label: line.label.clone(), index: line.number, at_borders: line.of.is_none(), y, other_at, others }
     }
 }
+
+/// Where in a picture the values of a column are: those of coordinates of blocks, which each picture has.
+fn place_in_picture(recorder: &PageRecorder, column: usize) -> Option<usize> {
+    let (block, of) = (column / BLOCK_COLUMNS, column % BLOCK_COLUMNS);
+    let scenery = &recorder.scenery;
+    let has = !scenery.is_crowded() && block < scenery.blocks.len() && of < BLOCK_COORDINATES;
+    has.then_some(BLOCK_FRAME * block + of)
+}
+
+/// Extremes that differ by this part of the largest value are as good as the value between them.
+const AS_GOOD: f64 = 2e-3;
 
 /// A curve's value is read off to this part of itself.
 const READ: f64 = 5e-4;

@@ -1,5 +1,6 @@
 //! What beams bore: deflected shapes, stress, envelopes, reactions.
 
+use crate::page::panels::length_unit;
 use crate::page::recorder::PageRecorder;
 use crate::page::{rounded, span};
 use crate::{Summary, with_digits};
@@ -53,11 +54,11 @@ pub(super) fn borne(recorder: &PageRecorder, summary: &Summary) -> String {
              and transverse force over the span, least and largest of all steps</h3>\n{figure}</section>"
         );
     }
-    html.push_str(&reactions(summary));
+    html.push_str(&reactions(recorder, summary));
     html
 }
 
-fn reactions(summary: &Summary) -> String {
+fn reactions(recorder: &PageRecorder, summary: &Summary) -> String {
     let supports: Vec<_> =
         summary.beams.iter().flat_map(|borne| borne.reactions.iter().map(|range| (&borne.beam, range))).collect();
     if supports.is_empty() {
@@ -69,7 +70,9 @@ fn reactions(summary: &Summary) -> String {
         aria-labelledby=\"reactions-title\"><table>\n<thead><tr>"
         .to_owned();
     html.push_str(if several { "<th scope=\"col\">Beam</th>" } else { "" });
-    html.push_str("<th scope=\"col\">x<br><small>m</small></th>");
+    let farthest = supports.iter().fold(0.0, |most: f64, (_, range)| most.max(range.x.abs()));
+    let (unit, factor) = length_unit(recorder.scenery.display.length, farthest);
+    let _ = write!(html, "<th scope=\"col\">x<br><small>{unit}</small></th>");
     // Pinned ends have none.
     let turned = supports.iter().any(|(_, range)| range.couple != [0.0; 2]);
     let columns = [("Force", "N"), ("Couple", "N m")];
@@ -79,13 +82,17 @@ fn reactions(summary: &Summary) -> String {
         }
     }
     html.push_str("</tr></thead>\n<tbody>\n");
-    let cell = |x: f64| format!("<td>{}</td>", rounded(x, 4).to_string().replace('-', "\u{2212}"));
-    for (beam, range) in supports {
+    let shown = if turned { 7 } else { 4 };
+    let rows = supports.iter().map(|(_, range)| {
+        let ([force, couple], [low, high], [least, most]) = (range.start, range.force, range.couple);
+        [factor * range.x, force, low, high, couple, least, most]
+    });
+    let rows: Vec<[f64; 7]> = rows.collect();
+    let columns: Vec<Vec<String>> = (0..shown).map(|k| aligned(rows.iter().map(|row| row[k]).collect())).collect();
+    for (number, (beam, range)) in supports.iter().enumerate() {
         let name = escaped(beam);
         let head = if several { format!("<th scope=\"row\">{name}</th>") } else { String::new() };
-        let ([force, couple], [low, high], [least, most]) = (range.start, range.force, range.couple);
-        let cells = [range.x, force, low, high, couple, least, most];
-        let cells: String = cells[..if turned { 7 } else { 4 }].iter().copied().map(cell).collect();
+        let cells: String = columns.iter().map(|column| format!("<td>{}</td>", column[number])).collect();
         let _ = writeln!(html, "<tr data-beam=\"{name}\" data-x=\"{}\">{head}{cells}</tr>", range.x);
     }
     html.push_str(
@@ -93,4 +100,34 @@ fn reactions(summary: &Summary) -> String {
          step: an impact\u{2019}s peak grows as the step shrinks.</p>\n</section>",
     );
     html
+}
+
+/// The values of a column, with as many decimals as give the largest four digits and no more than one of them needs; no negative zero.
+fn aligned(values: Vec<f64>) -> Vec<String> {
+    let largest = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let most = if largest > 0.0 { (3 - largest.log10().floor() as i32).clamp(0, 12) as usize } else { 0 };
+    let decimals = |x: &f64| {
+        let text = format!("{x:.most$}");
+        text.split_once('.').map_or(0, |(_, part)| part.trim_end_matches('0').len())
+    };
+    let decimals = values.iter().map(decimals).max().unwrap_or(0);
+    let text = |x: f64| {
+        let text = format!("{x:.decimals$}");
+        let zero = text.trim_start_matches('-').trim_matches(['0', '.']).is_empty();
+        if zero { text.trim_start_matches('-').to_owned() } else { text.replace('-', "\u{2212}") }
+    };
+    values.into_iter().map(text).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::aligned;
+
+    #[test]
+    fn values_of_a_column_have_the_same_decimals() {
+        assert_eq!(aligned(vec![38.5, 77.01]), ["38.50", "77.01"]);
+        assert_eq!(aligned(vec![-4942.3, 0.001]), ["\u{2212}4942", "0"]);
+        assert_eq!(aligned(vec![0.0, 0.6]), ["0.0", "0.6"]);
+        assert_eq!(aligned(vec![0.0, -0.0]), ["0", "0"]);
+    }
 }

@@ -32,16 +32,24 @@ pub(super) fn rocking(cycles: &[HalfCycle], recorder: &PageRecorder, dt: f64) ->
     let of_times = decimals(std::iter::once(dt), 2).max(5);
     let of_rates = decimals(cycles.iter().filter_map(|cycle| cycle.omega).flatten(), 5);
     let of_peaks = decimals(cycles.iter().filter_map(|cycle| cycle.peak_after).map(|peak| peak * per_radian), 4);
+    // A column without a value says nothing: of a dropped block no corner comes down while the other one stands.
+    let (hits, ideal) =
+        (cycles.iter().any(|cycle| cycle.omega.is_some()), cycles.iter().any(|cycle| cycle.housner.is_some()));
     let mut head =
         "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"rocking-title\"><table>\n<thead><tr>"
             .to_owned();
     head.push_str(if several { "<th scope=\"col\">Block</th>" } else { "" });
-    head.push_str(
-        &"<th scope=\"col\">φ = 0 at<br><small>s</small></th><th scope=\"col\">ω⁻<br><small>rad/s</small></th>\
-        <th scope=\"col\">ω⁺<br><small>rad/s</small></th><th scope=\"col\">ω⁺/ω⁻</th>\
-        <th scope=\"col\">Housner</th><th scope=\"col\">Next peak<br><small>{angle}</small></th>\
-        <th scope=\"col\">Peak to peak</th></tr></thead>\n<tbody>\n"
-            .replace("{angle}", angle_unit),
+    head.push_str("<th scope=\"col\">φ = 0 at<br><small>s</small></th>");
+    head.push_str(if hits {
+        "<th scope=\"col\">ω⁻<br><small>rad/s</small></th><th scope=\"col\">ω⁺<br><small>rad/s</small></th>\
+         <th scope=\"col\">ω⁺/ω⁻</th>"
+    } else {
+        ""
+    });
+    head.push_str(if ideal { "<th scope=\"col\">Housner</th>" } else { "" });
+    let _ = write!(
+        head,
+        "<th scope=\"col\">Next peak<br><small>{angle_unit}</small></th><th scope=\"col\">Peak to peak</th></tr></thead>\n<tbody>\n"
     );
     let fixed = |x: Option<f64>, digits: usize| {
         // No negative zero.
@@ -63,31 +71,43 @@ pub(super) fn rocking(cycles: &[HalfCycle], recorder: &PageRecorder, dt: f64) ->
         }
         let name = escaped(&cycle.body);
         let row_head = if several { format!("<th scope=\"row\">{name}</th>") } else { String::new() };
-        let _ = writeln!(
-            html,
-            "<tr data-body=\"{name}\" data-t=\"{}\">{row_head}<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>\
-             <td>{}</td><td>{}</td></tr>",
-            cycle.t,
-            fixed(Some(cycle.t), of_times),
-            fixed(cycle.omega.map(|omega| omega[0]), of_rates),
-            fixed(cycle.omega.map(|omega| omega[1]), of_rates),
-            fixed(cycle.ratio(), 4),
-            fixed(cycle.housner, 4),
-            fixed(cycle.peak_after.map(|peak| peak * per_radian), of_peaks),
-            fixed(cycle.decay(), 4),
-        );
+        let rates = [0, 1].map(|k| fixed(cycle.omega.map(|omega| omega[k]), of_rates));
+        let cells = [
+            (true, fixed(Some(cycle.t), of_times)),
+            (hits, rates[0].clone()),
+            (hits, rates[1].clone()),
+            (hits, fixed(cycle.ratio(), 4)),
+            (ideal, fixed(cycle.housner, 4)),
+            (true, fixed(cycle.peak_after.map(|peak| peak * per_radian), of_peaks)),
+            (true, fixed(cycle.decay(), 4)),
+        ];
+        let cells: String =
+            cells.iter().filter(|(shown, _)| *shown).map(|(_, cell)| format!("<td>{cell}</td>")).collect();
+        let _ = writeln!(html, "<tr data-body=\"{name}\" data-t=\"{}\">{row_head}{cells}</tr>", cycle.t);
     }
     html.push_str("</tbody></table></div>\n");
     html.push_str(if cycles.len() > UNFOLDED { "</details>\n" } else { "" });
     if cycles.len() > ROWS {
         let _ = writeln!(html, "<p>… and {} more; all are in summary.json.</p>", cycles.len() - ROWS);
     }
-    html.push_str(
-        "<p class=\"note\">ω⁻ and ω⁺ are the angular velocities right before and right after the step in which the \
-         corner that comes down hits; a step of gravity is in them, too. Housner: 1 − (3/2) sin²α, for rigid ground without slip or bounce. A base that \
-         gives way spreads the loss over the half cycle: the ratio is then nearer to 1, and the decay from peak to peak \
-         tells what is lost.",
-    );
+    html.push_str("<p class=\"note\">");
+    html.push_str(if hits {
+        "ω⁻ and ω⁺ are the angular velocities right before and right after the step in which the corner that comes down hits; a step of \
+         gravity is in them, too. "
+    } else {
+        "Angular velocities before and after an impact are told where one corner stands as the other comes down. "
+    });
+    html.push_str(if ideal {
+        "Housner: 1\u{a0}−\u{a0}(3/2)\u{a0}sin²α, for rigid ground without slip or bounce. "
+    } else {
+        ""
+    });
+    html.push_str(if hits {
+        "A base that gives way spreads the loss over the half cycle: the ratio is then nearer to 1, and the decay from peak to peak tells \
+         what is lost."
+    } else {
+        ""
+    });
     html.push_str(if scenery.incline != 0.0 {
         " Here φ is measured from the incline, in the plots from the horizontal; the swings to the two sides differ, as gravity isn’t \
          normal to the incline."

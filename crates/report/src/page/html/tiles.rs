@@ -13,6 +13,9 @@ pub(super) struct Numbers(Value);
 /// What the clock measured, which differs from run to run.
 const CLOCKED: [&str; 2] = ["wall_seconds", "us_per_step"];
 
+/// What the head of the page says.
+const HEADED: [&str; 3] = ["title", "version", "headline"];
+
 impl Numbers {
     pub(super) fn of(summary: &Summary) -> Self {
         // A summary always serialises: its numbers are finite, or null.
@@ -48,7 +51,8 @@ impl Numbers {
         let mut paths = Vec::new();
         walk(&self.0, "", &mut paths);
         paths.retain(|path| {
-            !TILES.contains(&path.as_str()) && !CLOCKED.contains(&path.as_str()) && !path.starts_with("model.")
+            let elsewhere = [&TILES[..], &CLOCKED, &HEADED].iter().any(|paths| paths.contains(&path.as_str()));
+            !elsewhere && !path.starts_with("model.")
         });
         paths
     }
@@ -80,7 +84,14 @@ fn lost(energy: &crate::summary::EnergySummary) -> String {
     with_prefix(if counts { energy.lost } else { 0.0 }, "J")
 }
 
-pub(super) fn tiles(values: &Numbers, summary: &Summary) -> String {
+/// A depth of penetration; what is rounding beside the smallest block isn't shown as a depth.
+fn depth(summary: &Summary, smallest: f64) -> String {
+    let counts = content::holds(summary.max_penetration, smallest);
+    with_prefix(if counts { summary.max_penetration } else { 0.0 }, "m")
+}
+
+/// `smallest`: the largest distance from the mass centre to the outline of the smallest block, m.
+pub(super) fn tiles(values: &Numbers, summary: &Summary, smallest: f64) -> String {
     let mut html = String::new();
     let seconds = |t: Option<f64>| t.map(|t| with_prefix(t, "s"));
     // Without contacts their numbers would all be 0.
@@ -92,14 +103,14 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary) -> String {
         }
         let (label, shown) = match path {
             "deflections.0.w" => ("Largest deflection", summary.deflections.first().map(|of| with_prefix(of.w, "m"))),
-            "max_phi_over_alpha" => ("Largest φ/α", summary.max_phi_over_alpha.map(share_of_critical_angle)),
+            "max_phi_over_alpha" => ("Largest φ/α", summary.max_phi_over_alpha.and_then(share_of_critical_angle)),
             "overturned_at" => ("First overturned at", seconds(summary.overturned_at)),
             "rests_from" => ("All at rest from", seconds(summary.rests_from)),
             "energy.lost" => ("Energy lost", Some(lost(&summary.energy))),
             "impact_count" => ("Impacts", Some(summary.impact_count.to_string())),
             "horizon" => ("Predictable up to", seconds(summary.horizon)),
             "reclosure_count" => ("Contacts lost and found again", Some(summary.reclosure_count.to_string())),
-            "max_penetration" => ("Deepest penetration", Some(with_prefix(summary.max_penetration, "m"))),
+            "max_penetration" => ("Deepest penetration", Some(depth(summary, smallest))),
             "energy.largest_residual" => ("Energy residual", Some(scientific(summary.energy.largest_residual))),
             "contact.unconverged_steps" => ("Steps not solved", Some(summary.contact.unconverged_steps.to_string())),
             "contact.max_residual" => ("Contact residual", Some(scientific(summary.contact.max_residual))),
@@ -119,20 +130,46 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary) -> String {
     html
 }
 
-pub(super) fn numbers(values: &Numbers) -> String {
+/// What the values of the table are, in words. One that has none here goes by its path.
+const NAMES: [(&str, &str); 18] = [
+    ("scheme", "Time scheme"),
+    ("dt", "Step"),
+    ("steps", "Steps"),
+    ("t", "Time reached"),
+    ("ended", "The run is"),
+    ("contact.solver", "Contact solver"),
+    ("contact.max_contact_residual", "Largest residual of a single contact"),
+    ("contact.max_contacts", "Most contacts in a step"),
+    ("energy.initial", "Energy at the start"),
+    ("energy.final", "Energy at the end"),
+    ("energy.scale", "Energy to which residuals are relative"),
+    ("energy.positive_contact_work.steps", "Steps in which contacts gave energy"),
+    ("energy.positive_contact_work.largest", "Largest gain of energy in a step"),
+    ("energy.positive_contact_work.sum", "All gains of energy"),
+    ("energy.largest_tangential_work", "Largest gain of energy by friction"),
+    ("unlocated_steps", "Steps with more impacts than are located"),
+    ("crossing_count", "Changes of sign of the angles"),
+    ("stopped_by", "Stopped as"),
+];
+
+pub(super) fn numbers(values: &Numbers, summary: &Summary) -> String {
     let mut html = String::new();
     for path in values.others() {
         let text = values.text(&path);
         // For people; the file, and `data-value`, have all digits.
         let shown = match (text.parse::<f64>(), unit_of(&path)) {
+            // Rounding beside the scene's energy isn't shown as energy.
+            (Ok(x), Some("J")) if !content::holds(x.abs(), summary.energy.scale) => "0 J".to_owned(),
             (Ok(x), Some(unit)) => with_digits(x, unit, 6).replace('-', "\u{2212}"),
-            (Ok(x), None) if text.contains(['.', 'e']) && path != "version" => shortest(x, 3).replace('-', "\u{2212}"),
+            (Ok(x), None) if text.contains('e') => scientific(x),
+            (Ok(x), None) if text.contains('.') => shortest(x, 3).replace('-', "\u{2212}"),
             _ => with_code(&text),
         };
         let text = escaped(&text);
+        let name = NAMES.iter().find(|(of, _)| *of == path).map_or(path.as_str(), |(_, name)| *name);
         let _ = writeln!(
             html,
-            "<tr><th scope=\"row\">{path}</th><td data-summary=\"{path}\" data-value=\"{text}\">{shown}</td></tr>"
+            "<tr><th scope=\"row\">{name}</th><td data-summary=\"{path}\" data-value=\"{text}\">{shown}</td></tr>"
         );
     }
     html
@@ -147,7 +184,7 @@ fn unit_of(path: &str) -> Option<&'static str> {
     }
 }
 
-/// φ/α for people: what is below a thousandth is rounding or hardly seen.
-fn share_of_critical_angle(share: f64) -> String {
-    if share < 1e-3 { "< 0.001".to_owned() } else { rounded(share, 3).to_string() }
+/// φ/α for people; nothing of less than a thousandth, which is rounding or hardly seen: such a block doesn't rock.
+fn share_of_critical_angle(share: f64) -> Option<String> {
+    (share >= 1e-3).then(|| rounded(share, 3).to_string())
 }

@@ -234,6 +234,18 @@ impl Panels {
         }
     }
 
+    /// How far a block goes along an axis beside what may carry it: of the world and the prescribed motions along that axis, the one from
+    /// which it goes least far.
+    fn carried_travel(&self, recorder: &PageRecorder, block: usize, axis: usize) -> f64 {
+        let own = self.curves.curve(BLOCK_COLUMNS * block + axis);
+        let along = recorder.scenery.driven.iter().enumerate().filter(|(_, driven)| driven.component == axis);
+        let beside = along.map(|(which, _)| {
+            let carrier = self.curves.curve(recorder.scenery.driven_column(which));
+            travel(&own.iter().zip(&carrier).map(|(own, carrier)| own - carrier).collect::<Vec<_>>())
+        });
+        beside.fold(travel(&own), f64::min)
+    }
+
     /// The coordinate in which each block moves most over its velocity.
     pub(super) fn portraits(&mut self, recorder: &PageRecorder) {
         let display = recorder.scenery.display;
@@ -241,7 +253,8 @@ impl Panels {
         let choice = |k: usize| {
             let reach = recorder.scenery.blocks[k].reach;
             let [x, y, turn] = [0, 1, PHI].map(|c| moves(k, c));
-            if holds(turn, 1.0) && turn * reach >= TURNS * x.max(y) {
+            let [across, up] = [0, 1].map(|c| self.carried_travel(recorder, k, c));
+            if holds(turn, 1.0) && turn * reach >= TURNS * across.max(up) {
                 Some(PHI)
             } else {
                 [(0, x), (1, y)]
@@ -280,7 +293,13 @@ impl Panels {
             };
             let coordinate = &COORDINATES[c];
             let reach = blocks().map(|k| recorder.scenery.blocks[k].reach).fold(0.0, f64::max);
-            let tops = blocks().filter_map(|k| recorder.points_of_no_return[k]).filter(|_| c == PHI);
+            // Of several, only of those that come near: nobody could tell whose the others are.
+            let alone = orbits.len() == 1;
+            let near = |(k, points): &(usize, Vec<Point>)| {
+                let tops = nears(recorder, *k, points.iter().map(|point| point[1]));
+                if alone { recorder.points_of_no_return[*k] } else { tops }
+            };
+            let tops = orbits.iter().filter(|_| c == PHI).filter_map(near);
             let guides = guides(tops.flatten(), factors[0]);
             let portrait = Portrait {
                 id: ["phase_x", "phase_y", "phase"][c],
@@ -318,12 +337,15 @@ const NEAR: f64 = 0.8;
 
 /// The points of no return, where the motion comes near them: elsewhere they would only squeeze the curve.
 fn critical_angles(recorder: &PageRecorder, moving: &[(usize, Vec<f64>)], factor: f64) -> Vec<f64> {
-    let near = |(k, values): &(usize, Vec<f64>)| {
-        let [right, left] = recorder.points_of_no_return[*k]?;
-        let (middle, room) = (0.5 * (left + right), 0.5 * (left - right));
-        values.iter().any(|phi| (phi - middle).abs() > NEAR * room).then_some([right, left])
-    };
+    let near = |(k, values): &(usize, Vec<f64>)| nears(recorder, *k, values.iter().copied());
     guides(moving.iter().filter_map(near).flatten(), factor)
+}
+
+/// The points of no return of a block, if one of these angles comes near them.
+fn nears(recorder: &PageRecorder, block: usize, mut angles: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    let [right, left] = recorder.points_of_no_return[block]?;
+    let (middle, room) = (0.5 * (left + right), 0.5 * (left - right));
+    angles.any(|phi| (phi - middle).abs() > NEAR * room).then_some([right, left])
 }
 
 /// Lines across a plot at these angles, rad, in ascending order, each once.

@@ -10,7 +10,6 @@ use teeter_report::document;
 const OWN_STYLE: &str = "\
 main > section { margin-top: 1.5rem; }\n\
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); gap: 1rem; }\n\
-.figures svg { max-width: 44rem; }\n\
 li { margin: .3rem 0; overflow-wrap: anywhere; }\ntd:first-child { text-align: left; }\n";
 
 /// The page of the figures of a study, or of several side by side.
