@@ -289,7 +289,7 @@ fn restitution_and_damping_come_back_within_two_percent() {
     };
     assert_eq!(row("zero of the angle").matches("°<").count(), 3, "{page}");
     assert_eq!(row("time shift").matches("\u{a0}s<").count(), 3, "{page}");
-    row("<code>contact.feet.restitution</code>");
+    row("<code>contact.<wbr>feet.<wbr>restitution</code>");
     // The scene's own motion is dashed, the fitted one isn't, and what was measured is pale.
     let figure = std::fs::read_to_string(folder.join("fitted/figures/phi.svg")).unwrap();
     assert!(figure.contains("stroke=\"#0050b0\" stroke-dasharray=\"5 2.5\""), "{figure}");
