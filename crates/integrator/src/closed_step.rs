@@ -62,7 +62,9 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     /// What was found of the new ones.
     found: Candidates<D>,
     found_rooms: Vec<f64>,
-    /// Of each body: how deep it is in others, m.
+    /// New contacts that may graze.
+    suspects: Vec<ContactId>,
+    /// Of each body: how deep it is in what it was on before, m.
     depths: Vec<f64>,
     /// Of each body: what would land within this time lands together with a contact that has just been closed, s; 0 where there is none.
     landings: Vec<f64>,
@@ -119,6 +121,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             new: Vec::new(),
             found: Vec::new(),
             found_rooms: Vec::new(),
+            suspects: Vec::new(),
             depths: Vec::new(),
             landings: Vec::new(),
             rigid: Vec::new(),
@@ -155,7 +158,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.stage.reserve(model);
         self.row.reserve(1, model.size().row, model.parts().len());
         self.found_rooms.reserve(contacts);
-        for ids in [&mut self.closed, &mut self.looked, &mut self.new] {
+        for ids in [&mut self.closed, &mut self.looked, &mut self.new, &mut self.suspects] {
             ids.reserve(contacts);
         }
         for of_bodies in [&mut self.depths, &mut self.landings] {

@@ -71,10 +71,14 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
     fn find_landings(&mut self, model: &Model<D>, h: f64, work: &Workspace<D>) -> Result<f64, Mismatch> {
         self.landings.clear();
         self.landings.resize(model.body_count(), 0.0);
+        self.depths.clear();
+        self.depths.resize(model.body_count(), 0.0);
         // What was closed before has been looked at.
-        let looked = std::mem::take(&mut self.looked);
-        self.find_depths(model, &work.candidates, |id| looked.binary_search(&id).is_ok());
-        self.looked = looked;
+        for sunk in work.candidates.iter().filter(|candidate| self.looked.binary_search(&candidate.id).is_ok()) {
+            for body in moving(model, sunk) {
+                self.depths[body] = self.depths[body].max(-sunk.gap);
+            }
+        }
         let mut longest = 0.0_f64;
         for candidate in &work.candidates {
             if self.new.binary_search(&candidate.id).is_err() || !self.is_rigid(model, candidate) {
