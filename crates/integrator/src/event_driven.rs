@@ -103,6 +103,8 @@ pub struct EventDriven {
     y: Vec<f64>,
     /// What errors are measured by.
     scale: Vec<f64>,
+    /// Coordinates within a step.
+    way: Vec<f64>,
     /// Slope at the end of a step.
     next_slope: Vec<f64>,
     mean: Vec<f64>,
@@ -184,6 +186,7 @@ impl EventDriven {
             from: None,
             y: Vec::new(),
             scale: Vec::new(),
+            way: Vec::new(),
             next_slope: Vec::new(),
             mean: Vec::new(),
             v_before: Vec::new(),
@@ -247,6 +250,7 @@ impl Scheme<2> for EventDriven {
         self.ids.reserve(contacts);
         self.touching.reserve(2 * contacts);
         self.found.reserve(contacts);
+        self.way.reserve(size.q);
         self.in_lowest_bounce.reserve(contacts);
         self.biases.reserve(contacts);
         self.parting.reserve(contacts);

@@ -345,9 +345,20 @@ impl EventDriven {
                 continue;
             }
             let tolerance = self.located.tolerance(q);
-            let lows = GapCubic::new([gap, candidate.gap], [rate, end_rate], h).lows();
-            if let Some((s, _)) = lows.into_iter().find(|(s, low)| *s > 0.01 && *s < 0.99 && *low < -tolerance) {
-                return Ok(Some(s * h));
+            let [cubic, meet] = GapCubic::new([gap, candidate.gap], [rate, end_rate], h).lows();
+            let is_low = |(s, low): (f64, f64)| s > 0.01 && s < 0.99 && low < -tolerance;
+            if is_low(cubic) {
+                return Ok(Some(cubic.0 * h));
+            }
+            if !is_low(meet) {
+                continue;
+            }
+            // On the straight way from start to end: near enough to tell whether two bodies pass through each other.
+            self.way.clear();
+            self.way.extend(self.y[..nq].iter().zip(q).map(|(start, end)| start + meet.0 * (end - start)));
+            work.locate(model, &self.way, &[candidate.id], &mut self.found)?;
+            if self.found.first().is_some_and(|found| found.gap < -tolerance) {
+                return Ok(Some(meet.0 * h));
             }
         }
         self.dip_beside(model, h, work)
