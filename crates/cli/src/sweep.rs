@@ -242,8 +242,9 @@ fn why_empty(output: &teeter_study::sweep::Output) -> String {
 /// Puts the folders of all shards together.
 pub(crate) fn merge_shards(folders: &[PathBuf], out: &Path, figure_width: f64, force: bool, quiet: bool) -> Exit {
     let console = Console::new(quiet);
-    let same = |folder: &&PathBuf| folder.canonicalize().ok().zip(out.canonicalize().ok()).is_some_and(|(a, b)| a == b);
-    if let Some(shard) = folders.iter().find(same) {
+    let replaced =
+        |folder: &&PathBuf| Results::spares(&FILES, out, &[folder.join(RESULTS), folder.join(IDENTITY)]).is_err();
+    if let Some(shard) = folders.iter().find(replaced) {
         console.error(&format!(
             "error: {} is one of the shards and stays as it is; give --out another folder",
             shard.display()

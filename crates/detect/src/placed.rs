@@ -112,14 +112,14 @@ pub(crate) struct Outline<'a> {
 }
 
 /// The cosine of the angle, 8°, up to which a side faces a direction.
-const FACING: f64 = 0.99;
+const TOWARDS: f64 = 0.99;
 
 impl Outline<'_> {
     /// The normals of its sides, in the world, that are within 8° of a direction.
     pub(crate) fn facing(&self, direction: &Vector<2>) -> impl Iterator<Item = Vector<2>> {
         let has_sides = self.corners.len() > 1;
         let normals = self.normals.iter().filter(move |_| has_sides).map(|normal| self.frame.turned(normal));
-        normals.filter(move |normal| normal.dot(direction) > FACING)
+        normals.filter(move |normal| normal.dot(direction) > TOWARDS)
     }
 
     /// How far it reaches along a unit direction of the world, m.

@@ -1,4 +1,4 @@
-//! Contacts that only a sunk body makes.
+//! Contacts that are there only because a body has sunk into another one.
 
 use super::together::moving;
 use super::{ClosedStep, find};
@@ -9,22 +9,22 @@ use teeter_detect::{BodyId, Candidate, Candidates, ContactId};
 /// Faces cross where |n·n′| is less than this.
 const CROSSING: f64 = 0.95;
 
-/// Up to this part of the depth to which a body has sunk, two bodies that overlap do so for that reason: the depth is that of other corners.
+/// Two bodies that overlap by up to this times the depth to which one of them has sunk do so for that reason: the depth is measured at other
+/// corners.
 const OF_DEPTH: f64 = 1.1;
 
 impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
     /// Leaves out of the new contacts those that graze. A block that has sunk into its brick by δ would strike the end of the next flush one
     /// when it slides on: that is no deeper beside it than δ.
     pub(super) fn leave_out_what_grazes(&mut self, model: &Model<D>, work: &mut Workspace<D>) -> Result<(), Mismatch> {
-        let mut suspects = std::mem::take(&mut self.suspects);
-        suspects.clear();
         // Blocks that lie on each other have no faces that cross, and then nothing is looked for.
+        let tolerance = self.gap_tolerance;
         let crossed = |id: &ContactId| {
             let contact = find(&work.candidates, *id);
-            contact.is_some_and(|contact| work.candidates.iter().any(|other| self.crosses(model, contact, other)))
+            contact.is_some_and(|contact| work.candidates.iter().any(|other| crosses(model, contact, other, tolerance)))
         };
-        suspects.extend(self.new.iter().copied().filter(crossed));
-        self.suspects = suspects;
+        self.suspects.clear();
+        self.suspects.extend(self.new.iter().copied().filter(crossed));
         if self.suspects.is_empty() {
             return Ok(());
         }
@@ -37,35 +37,39 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         Ok(())
     }
 
-    /// Whether another contact of a body that moves is in its surface, by a face that crosses that of the first.
-    fn crosses(&self, model: &Model<D>, contact: &Candidate<D>, other: &Candidate<D>) -> bool {
-        other.gap < -self.gap_tolerance
-            && cosine(contact, other).abs() < CROSSING
-            && moving(model, contact).any(|body| moving(model, other).any(|of| of == body))
-    }
-
     /// Whether the bodies of a contact overlap by no more, along the normal of another one that one of them has sunk into, than by how deep
     /// it has.
     fn grazes(&self, model: &Model<D>, contact: &Candidate<D>, room: f64, candidates: &Candidates<D>) -> bool {
         let at = model.placed_at(self.step.q_end());
         let bodies = contact.sides.map(|side| side.body);
         // Within the surface of the other one is no more of a side than its depth over the sine of their angle.
-        let at_end = |other: &&Candidate<D>| {
+        let at_end = |other: &Candidate<D>| {
             let cosine = cosine(contact, other);
             room * (1.0 - cosine * cosine).sqrt() <= OF_DEPTH * -other.gap
         };
-        candidates.iter().filter(|other| self.crosses(model, contact, other)).filter(at_end).any(|other| {
-            (0..2).filter(|side| model.moves(bodies[*side])).any(|side| {
-                let Some(out) = out_of(other, bodies[side]) else { return false };
+        let is_parted = |other: &Candidate<D>, side: usize| {
+            let out = out_of(other, bodies[side]).filter(|_| model.moves(bodies[side]));
+            let beyond = out.and_then(|out| {
                 let direction = if side == 0 { out } else { -out };
-                let beyond = model.detector().beyond(&at, contact.id, &direction);
-                beyond.is_some_and(|beyond| beyond >= OF_DEPTH * other.gap)
-            })
-        })
+                model.detector().beyond(&at, contact.id, &direction)
+            });
+            beyond.is_some_and(|beyond| beyond >= OF_DEPTH * other.gap)
+        };
+        let mut crossing =
+            candidates.iter().filter(|other| crosses(model, contact, other, self.gap_tolerance) && at_end(other));
+        crossing.any(|other| is_parted(other, 0) || is_parted(other, 1))
     }
 }
 
-/// Of the angle of the normals of two contacts.
+/// Whether another contact is deeper in its surface than a tolerance (m), by a face that crosses that of the first, and both are of a body
+/// that moves.
+fn crosses<const D: usize>(model: &Model<D>, contact: &Candidate<D>, other: &Candidate<D>, tolerance: f64) -> bool {
+    other.gap < -tolerance
+        && cosine(contact, other).abs() < CROSSING
+        && moving(model, contact).any(|body| moving(model, other).any(|of| of == body))
+}
+
+/// The cosine of the angle between the normals of two contacts.
 fn cosine<const D: usize>(a: &Candidate<D>, b: &Candidate<D>) -> f64 {
     a.frame.row(0).dot(&b.frame.row(0))
 }

@@ -107,12 +107,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 let mut inside = None;
                 for (s, low) in cubic.lows() {
                     let dips = low < -tolerance && s > 0.0 && s < 1.0;
-                    let tau = s * h;
-                    if inside.is_none()
-                        && dips
-                        && self.is_inside_at(model, from, (end.id, tolerance), [h, tau], work)?
-                    {
-                        inside = Some(tau);
+                    if dips && self.is_inside_at(model, from, (end.id, tolerance), [h, s * h], work)? {
+                        inside = Some(s * h);
+                        break;
                     }
                 }
                 inside

@@ -4,8 +4,8 @@ use super::Shapes;
 use crate::simulation::{BlockPlace, Layout};
 use teeter_detect::Vector;
 
-/// A block went through the ground where the way of its mass centre comes closer to it than this part of its shorter side: what lies on
-/// ground has twice as much, at least.
+/// A block went through the ground where the path of its mass centre comes closer to it than this part of its shorter side. What lies on the
+/// ground is farther away: a rectangle by a half, a triangle by a third.
 const THROUGH: f64 = 0.25;
 
 impl Shapes {
@@ -24,8 +24,8 @@ impl Shapes {
             // Where they were nearest on their way here.
             let back = if straight > 0.0 { ((x * dx + y * dy) / (straight * straight)).clamp(0.0, 1.0) } else { 0.0 };
             let nearest = (x - back * dx).hypot(y - back * dy);
-            let turned = |of: &BlockPlace, other: &BlockPlace| turned(of, v, dt, nearest + other.reach);
-            let far = straight + turned(first, second) + turned(second, first);
+            let swept = |of: &BlockPlace, other: &BlockPlace| swept_by_turning(of, v, dt, nearest + other.reach);
+            let far = straight + swept(first, second) + swept(second, first);
             let passes = far > 0.5 * (first.side + second.side) && nearest < first.reach + second.reach;
             passes.then_some((a, b, far))
         };
@@ -36,7 +36,7 @@ impl Shapes {
         // Of two that come so far past each other one comes at least half as far.
         let is_fast = |k: &usize| {
             let (place, at) = (&layout.blocks[*k], layout.blocks[*k].range.start);
-            dt * v[at].hypot(v[at + 1]) + turned(place, v, dt, f64::INFINITY) > 0.5 * self.shortest
+            dt * v[at].hypot(v[at + 1]) + swept_by_turning(place, v, dt, f64::INFINITY) > 0.5 * self.shortest
         };
         let is_fast: Vec<bool> = (0..layout.blocks.len()).map(|k| is_fast(&k)).collect();
         if !is_fast.contains(&true) {
@@ -100,9 +100,9 @@ impl Shapes {
     }
 }
 
-/// How far the points of a block that are at most `within` (m) from its mass centre went past what is there as it turned in a step, m; what
-/// is as wide in all directions doesn't.
-fn turned(place: &BlockPlace, v: &[f64], dt: f64, within: f64) -> f64 {
+/// How far the points of a block that are at most `within` (m) from its mass centre moved past their surroundings by its turning in a step
+/// of `dt` (s), m. A disc moves past nothing as it turns.
+fn swept_by_turning(place: &BlockPlace, v: &[f64], dt: f64, within: f64) -> f64 {
     let is_round = place.side >= 2.0 * place.reach * (1.0 - 1e-9);
     if is_round { 0.0 } else { dt * v[place.range.start + 2].abs() * place.reach.min(within) }
 }

@@ -110,6 +110,11 @@ pub fn json(fit: &Fit, scene: &str, measured: &str, block: &str) -> String {
     serde_json::to_string_pretty(&value).unwrap_or_default() + "\n"
 }
 
+/// A unit with the space before it; nothing where there is none.
+fn spaced(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+}
+
 /// Whether what is left is too much for noise.
 fn is_misfit(fit: &Fit) -> bool {
     fit.misfit > IMPROBABLE
@@ -209,7 +214,7 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
             texts.push(format!(
                 "warning: values of {} from {low} to {high}{} fit about as well as {value}: the differences are a rough function of it, of which the standard error knows only the neighbourhood",
                 found.name,
-                if found.unit.is_empty() { String::new() } else { format!(" {}", found.unit) },
+                spaced(&found.unit),
             ));
         }
         if found.share_of_range.is_some_and(|share| !share.is_finite()) {
@@ -235,10 +240,9 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
     }
     for (values, cost) in hardly_worse(fit) {
         let pairs = fit.estimates.iter().zip(values).map(|(found, value)| {
-            let unit = if found.unit.is_empty() { String::new() } else { format!(" {}", found.unit) };
             let (low, high) = found.interval();
             let decimals = decimals_of(0.25 * (high - low)).unwrap_or(5);
-            format!("{} = {value:.decimals$}{unit}", found.name)
+            format!("{} = {value:.decimals$}{}", found.name, spaced(&found.unit))
         });
         texts.push(format!(
             "warning: there is another minimum that fits hardly worse, {}: it leaves {} times the noise",

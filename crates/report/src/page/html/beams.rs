@@ -1,5 +1,6 @@
 //! What beams bore: deflected shapes, stress, envelopes, reactions.
 
+use super::rocking::decimals;
 use crate::page::panels::length_unit;
 use crate::page::recorder::PageRecorder;
 use crate::page::{rounded, span};
@@ -104,13 +105,12 @@ fn reactions(recorder: &PageRecorder, summary: &Summary) -> String {
 
 /// The values of a column, with as many decimals as give the largest four digits and no more than one of them needs; no negative zero.
 fn aligned(values: Vec<f64>) -> Vec<String> {
-    let largest = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let most = if largest > 0.0 { (3 - largest.log10().floor() as i32).clamp(0, 12) as usize } else { 0 };
-    let decimals = |x: &f64| {
+    let most = decimals(values.iter().copied(), 4);
+    let needed = |x: &f64| {
         let text = format!("{x:.most$}");
         text.split_once('.').map_or(0, |(_, part)| part.trim_end_matches('0').len())
     };
-    let decimals = values.iter().map(decimals).max().unwrap_or(0);
+    let decimals = values.iter().map(needed).max().unwrap_or(0);
     let text = |x: f64| {
         let text = format!("{x:.decimals$}");
         let zero = text.trim_start_matches('-').trim_matches(['0', '.']).is_empty();

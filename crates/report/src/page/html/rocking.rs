@@ -12,7 +12,7 @@ const ROWS: usize = 300;
 const UNFOLDED: usize = 20;
 
 /// Decimals with which the largest of the values of a column has so many digits.
-fn decimals(values: impl Iterator<Item = f64>, digits: i32) -> usize {
+pub(super) fn decimals(values: impl Iterator<Item = f64>, digits: i32) -> usize {
     let largest = values.fold(0.0, |most: f64, x| most.max(x.abs()));
     if largest > 0.0 { (digits - 1 - largest.log10().floor() as i32).clamp(0, 12) as usize } else { 0 }
 }

@@ -78,16 +78,9 @@ const TILES: [&str; 13] = [
 /// The first tile that is of the computation.
 const NUMERIC: usize = 7;
 
-/// Energy that is lost; what is rounding beside the scene's energy isn't shown as a loss.
-fn lost(energy: &crate::summary::EnergySummary) -> String {
-    let counts = content::holds(energy.lost.abs(), energy.scale);
-    with_prefix(if counts { energy.lost } else { 0.0 }, "J")
-}
-
-/// A depth of penetration; what is rounding beside the smallest block isn't shown as a depth.
-fn depth(summary: &Summary, smallest: f64) -> String {
-    let counts = content::holds(summary.max_penetration, smallest);
-    with_prefix(if counts { summary.max_penetration } else { 0.0 }, "m")
+/// A value with its unit; what is rounding beside `scale` is shown as 0.
+fn above_rounding(value: f64, scale: f64, unit: &str) -> String {
+    with_prefix(if content::holds(value.abs(), scale) { value } else { 0.0 }, unit)
 }
 
 /// `smallest`: the largest distance from the mass centre to the outline of the smallest block, m.
@@ -106,11 +99,11 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, smallest: f64) -> Strin
             "max_phi_over_alpha" => ("Largest φ/α", summary.max_phi_over_alpha.and_then(share_of_critical_angle)),
             "overturned_at" => ("First overturned at", seconds(summary.overturned_at)),
             "rests_from" => ("All at rest from", seconds(summary.rests_from)),
-            "energy.lost" => ("Energy lost", Some(lost(&summary.energy))),
+            "energy.lost" => ("Energy lost", Some(above_rounding(summary.energy.lost, summary.energy.scale, "J"))),
             "impact_count" => ("Impacts", Some(summary.impact_count.to_string())),
             "horizon" => ("Predictable up to", seconds(summary.horizon)),
             "reclosure_count" => ("Contacts lost and found again", Some(summary.reclosure_count.to_string())),
-            "max_penetration" => ("Deepest penetration", Some(depth(summary, smallest))),
+            "max_penetration" => ("Deepest penetration", Some(above_rounding(summary.max_penetration, smallest, "m"))),
             "energy.largest_residual" => ("Energy residual", Some(scientific(summary.energy.largest_residual))),
             "contact.unconverged_steps" => ("Steps not solved", Some(summary.contact.unconverged_steps.to_string())),
             "contact.max_residual" => ("Contact residual", Some(scientific(summary.contact.max_residual))),
