@@ -46,6 +46,7 @@ pub(crate) fn compare(options: &Options) -> Exit {
         Ok(prepared) => prepared,
         Err(text) => return bad_input(&text),
     };
+    options.measured.tell_unread(&measured, console);
     let settings = CompareSettings {
         alignment: options.measured.alignment(),
         window: options.measured.window,

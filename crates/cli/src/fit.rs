@@ -61,6 +61,7 @@ pub(crate) fn fit(options: &Options) -> Exit {
         Ok(measured) => measured,
         Err(text) => return bad_input(&text),
     };
+    options.measured.tell_unread(&measured, console);
     let folder = options.out.clone().unwrap_or_else(|| Path::new("runs").join(format!("{}-fit", scene.stem())));
     let inputs: Vec<PathBuf> = scene.inputs(resolved).into_iter().chain(options.measured.inputs()).collect();
     let reserved =

@@ -304,7 +304,9 @@ enum Command {
         force: bool,
     },
     /// Find the values of keys with which a scene fits measured motion best
+    // As clap would write it, the keys would swallow the files.
     #[command(after_help = FIT_HELP)]
+    #[command(override_usage = "teeter fit [OPTIONS] <SCENE> <MEASURED.csv> --vary <KEY=LOW..HIGH>...")]
     Fit {
         /// The scene file; `-` reads standard input
         scene: PathBuf,

@@ -1,12 +1,17 @@
 //! The measured table of `teeter compare` and `teeter fit`, and how it is laid out.
 
+use crate::console::Console;
 use crate::render::Presenter;
 use clap::Args;
 use std::path::{Path, PathBuf};
+use teeter_scenario::diagnostic::printable;
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::quantity;
 use teeter_study::compare::AlignmentSettings;
 use teeter_study::measured::{ColumnLayout, LARGEST_FILE, LEAST_WINDOW, Measured, Sign};
+
+/// How many columns that aren't read are named.
+const MOST_NAMED: usize = 5;
 
 /// Options that say where the quantities stand in a table of measured motion.
 #[derive(Args, Debug)]
@@ -109,6 +114,22 @@ impl MeasuredOptions {
         layout.rate = self.rate.or(layout.rate);
         let bytes = bytes(&self.measured)?;
         Measured::read(&bytes, &layout, block).map_err(|error| format!("error: {}: {error}", self.measured.display()))
+    }
+
+    /// Names the columns of the table that aren't read.
+    pub(crate) fn tell_unread(&self, measured: &Measured, console: Console) {
+        let unread: Vec<String> =
+            measured.unread().iter().take(MOST_NAMED).map(|name| format!("`{}`", printable(name))).collect();
+        if let [first, ..] = unread.as_slice() {
+            let more = measured.unread().len() - unread.len();
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            console.note(&format!(
+                "{}: not read: {}{more}; if one is needed, name it, such as --column phi=\"{}\"",
+                self.measured.display(),
+                unread.join(", "),
+                first.trim_matches('`')
+            ));
+        }
     }
 }
 

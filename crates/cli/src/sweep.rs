@@ -230,7 +230,10 @@ fn notes(console: Console, sweep: &Sweep, tally: &Tally) {
 fn why_empty(output: &teeter_study::sweep::Output) -> String {
     match (output.summary_path(), output.column()) {
         (Some(path), _) => format!("summary.json has no value at {path}"),
-        (None, Some(column)) => format!("trajectory.csv has no column {column}, or no row at that time"),
+        (None, Some(column)) => match output.time() {
+            Some(t) => format!("trajectory.csv has no row at t = {t} s or later, or no column {column}"),
+            None => format!("trajectory.csv has no column {column}"),
+        },
         (None, None) => match output.spectrum_of() {
             Some("") => "the scene has no record".to_owned(),
             Some(of) => format!("the scene has no record at {of}, such as ground.motion.x"),
@@ -290,6 +293,7 @@ fn prepare(path: &Path, shard: Shard) -> Result<Study, String> {
     let settings = sweep.settings_with_files();
     let source = StudyScene::with_files_of(bytes, scene.name(), scene.stem(), settings, &mut companions);
     sweep.check_keys(&source, &name).map_err(|found| present(&found))?;
+    sweep.check_outputs(&source, &text, &name).map_err(|found| present(&found))?;
     let identity = SweepIdentity::new(&text, source.contents(), sweep.cases(), shard);
     let named = source.files().map(|file| scene.place(file));
     let inputs = [path.to_owned(), folder.join(sweep.scene())].into_iter().chain(named).collect();

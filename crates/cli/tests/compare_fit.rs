@@ -407,7 +407,8 @@ fn bad_measured_tables_are_refused_with_their_line() {
     let scene = scenario("free-rocking-on-ground.toml");
     done(&folder, &["run", &scene, "--out", "run", "--quiet", "--no-report", "--set", "time.end=0.2 s"]);
     let rows: String = (0..20).map(|k| format!("{},0.0{k}\n", 0.01 * f64::from(k))).collect();
-    let tables: [(&str, Vec<u8>, &str); 12] = [
+    let twice: String = (0..20).map(|k| format!("{},0.0{k},0.1\n", 0.01 * f64::from(k))).collect();
+    let tables: [(&str, Vec<u8>, &str); 14] = [
         ("empty", Vec::new(), "the file is empty"),
         ("comments", b"# a\n# b\n".to_vec(), "the file is empty"),
         ("binary", vec![0x89, b'P', b'N', b'G', 0xff], "not a text file in UTF-8"),
@@ -419,6 +420,12 @@ fn bad_measured_tables_are_refused_with_their_line() {
         ("unit", format!("t,phi [kg]\n{rows}").into_bytes(), "the unit `kg` of phi"),
         ("unnamed", rows.clone().into_bytes(), "the table has 2 columns without headings"),
         ("degrees", format!("t,phi\n{rows}0.5,5.0\n").into_bytes(), "--unit phi=deg"),
+        (
+            "twice",
+            format!("t,phi,phi\n{twice}").into_bytes(),
+            "2 columns are headed `phi`, 2 and 3: name one by its number",
+        ),
+        ("units", format!("t,phi [rad],phi [deg]\n{twice}").into_bytes(), "such as --column phi=2"),
         ("other", format!("t,angel\n{rows}").into_bytes(), "no column of the motion of `rocker` is known"),
     ];
     let refused = |arguments: &[&str], says: &str| {
@@ -458,4 +465,45 @@ fn bad_measured_tables_are_refused_with_their_line() {
     fit("contact.feet.fricton=0.1..0.2", "did you mean `contact.feet.friction`?");
     fit("block.rocker.height=1 mm..2 cm", "have the units `mm` and `cm`");
     fit("contact.feet.friction", "write KEY=LOW..HIGH");
+    refused(&["fit", "--vary", "contact.feet.friction=0.2..0.9", &scene, "good.csv"], "files come before --vary");
+}
+
+/// A table that stands tilted, one of a single column, and one that holds no motion.
+#[test]
+fn what_a_table_shows_beside_the_motion_is_told() {
+    let folder = folder("beside");
+    let scene = scenario("free-rocking-on-ground.toml");
+    done(&folder, &["run", &scene, "--out", "run", "--quiet", "--no-report", "--set", "time.end=0.6 s"]);
+    let frames = frames(&folder.join("run"), "rocker");
+    let table = |name: &str, heading: &str, row: &dyn Fn(&[f64; 4]) -> String| {
+        let rows: String = frames.iter().map(row).collect();
+        std::fs::write(folder.join(name), format!("{heading}\n{rows}")).unwrap();
+    };
+    let compare = |arguments: &[&str]| {
+        let output = teeter(&folder, &[&["compare", "run"], arguments, &["--force"]].concat());
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{arguments:?}: {told}");
+        (String::from_utf8(output.stdout).unwrap(), told)
+    };
+    table("tilted.csv", "t,Angle (deg),Force (N)", &|row| format!("{},{},3\n", row[0], row[3].to_degrees() + 0.3));
+    let (text, told) = compare(&["tilted.csv"]);
+    assert!(text.contains("the angles are apart by a constant, 0.3°"), "{text}");
+    assert!(text.contains("with --offset \"0.300 deg\""), "{text}");
+    assert!(told.contains("tilted.csv: not read: `Force (N)`; if one is needed, name it"), "{told}");
+    let (text, _) = compare(&["tilted.csv", "--offset", "0.3 deg"]);
+    assert!(!text.contains("apart by a constant"), "{text}");
+    let (text, _) = compare(&["tilted.csv", "--offset", "0.3 deg", "--sign", "-1", "--shift", "0 s"]);
+    assert!(!text.contains("apart by a constant"), "{text}");
+    table("mirrored.csv", "t,phi", &|row| format!("{},{}\n", row[0], 0.3_f64.to_radians() - row[3]));
+    let (text, told) = compare(&["mirrored.csv"]);
+    assert!(text.contains("with --offset \"0.300 deg\"") && !told.contains("not read"), "{text}{told}");
+    table("alone.csv", "phi [deg]", &|row| format!("{}\n", row[3].to_degrees()));
+    let (text, _) = compare(&["alone.csv", "--rate", "165 Hz"]);
+    assert!(text.contains("(found)") && !text.contains("hardly match"), "{text}");
+    table("still.csv", "t,phi", &|row| format!("{},0.01\n", row[0]));
+    assert!(compare(&["still.csv"]).0.contains("the measured phi is the same in all rows"));
+    let noise = std::cell::RefCell::new(Noise(3));
+    table("noise.csv", "t,phi", &|row| format!("{},{}\n", row[0], 1e-3 * noise.borrow_mut().next()));
+    let (text, _) = compare(&["noise.csv"]);
+    assert!(text.contains("the measured phi doesn’t rise above its noise"), "{text}");
 }

@@ -107,7 +107,7 @@ fn shards_merge_to_the_bytes_of_one_run_on_any_number_of_threads() {
 
 #[test]
 fn notes_are_of_all_cases_also_of_those_that_ran_before() {
-    let sweep = "scene = \"rocking.toml\"\n[grid]\ncontact.feet.friction = [0.3, -1, 0.5]\n[outputs]\nnothing = \"no.such.value\"\n";
+    let sweep = "scene = \"rocking.toml\"\n[grid]\ncontact.feet.friction = [0.3, -1, 0.5]\n[outputs]\nnothing = \"peaks.90000.phi\"\n";
     let folder = study("notes", sweep);
     let first = done(&folder, &["sweep", "sweep.toml", "--out", "all"]);
     let again = done(&folder, &["sweep", "sweep.toml", "--out", "all", "--resume"]);
@@ -306,12 +306,40 @@ fn a_scene_is_no_sweep_and_a_sweep_no_scene() {
 }
 
 #[test]
+fn an_output_that_no_run_can_have_is_refused_before_the_first() {
+    for (output, says) in [
+        ("\"no.such.key\"", "summary.json has no value at no.such.key"),
+        ("\"impactcount\"", "did you mean `impact_count`?"),
+        ("\"energy.largest_residul\"", "did you mean `energy.largest_residual`?"),
+        ("\"energy.final.value\"", "summary.json has no value at energy.final.value"),
+        ("{ max = \"rocker.psi\" }", "did you mean `rocker.phi`?"),
+        ("{ at = \"1 ms\", of = \"roker.x\" }", "trajectory.csv has no column roker.x; it has t, rocker.x, rocker.y"),
+    ] {
+        let folder = study("refused-output", &format!("{SWEEP}nothing = {output}\n"));
+        let refused = teeter(&folder, &["sweep", "sweep.toml", "--out", "out"]);
+        let told = String::from_utf8(refused.stderr).unwrap();
+        assert_eq!(refused.status.code(), Some(2), "{output}: {told}");
+        assert!(
+            told.contains("outputs.nothing") && told.contains("sweep.toml:15:11") && told.contains(says),
+            "{output}: {told}"
+        );
+        assert!(!folder.join("out").exists());
+    }
+}
+
+#[test]
 fn an_output_that_no_case_has_is_told() {
-    let sweep = format!("{SWEEP}nothing = \"no.such.key\"\nnowhere = {{ max = \"rocker.psi\" }}\n");
+    let sweep = format!(
+        "{SWEEP}nothing = \"peaks.90000.phi\"\nnowhere = {{ at = \"7 min\", of = \"rocker.phi\" }}\n\
+         work = \"energy.positive_contact_work.largest\"\n"
+    );
     let folder = study("empty", &sweep);
     let told = done(&folder, &["sweep", "sweep.toml", "--out", "out"]);
-    assert!(told.contains("`nothing` is empty in all cases: summary.json has no value at no.such.key"), "{told}");
-    assert!(told.contains("`nowhere` is empty in all cases: trajectory.csv has no column rocker.psi"), "{told}");
+    assert!(told.contains("`nothing` is empty in all cases: summary.json has no value at peaks.90000.phi"), "{told}");
+    assert!(
+        told.contains("`nowhere` is empty in all cases: trajectory.csv has no row at t = 420 s or later"),
+        "{told}"
+    );
 }
 
 /// Two records as the values of one key, listed by a pattern relative to the sweep file.

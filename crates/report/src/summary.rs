@@ -459,6 +459,41 @@ impl Summary {
         }
     }
 
+    /// The keys at the top of `summary.json`; those of what a run doesn't have are left out there.
+    pub const KEYS: [&'static str; 31] = [
+        "title",
+        "version",
+        "scheme",
+        "dt",
+        "steps",
+        "t",
+        "wall_seconds",
+        "us_per_step",
+        "contact",
+        "max_penetration",
+        "energy",
+        "impacts",
+        "impact_count",
+        "reclosure_count",
+        "unlocated_steps",
+        "crossings",
+        "crossing_count",
+        "peaks",
+        "beams",
+        "deflections",
+        "records",
+        "headline",
+        "verdict",
+        "max_phi_over_alpha",
+        "overturned_at",
+        "rests_from",
+        "stopped_by",
+        "horizon",
+        "ended",
+        "model",
+        "warnings",
+    ];
+
     /// The value that `summary.json` has under a key at its top, alone: a study wants few of them of each run, and the lists
     /// may be long. `None` where it has no such key.
     #[must_use]

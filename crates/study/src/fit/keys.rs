@@ -33,7 +33,7 @@ impl FitKey {
             "write KEY=LOW..HIGH, such as contact.feet.restitution=0..0.8 or beam.table.thickness=\"1 mm..2 mm\"";
         let parts = text.split_once('=').and_then(|(key, range)| Some((key.trim(), range.split_once("..")?)));
         let Some((key, (low, high))) = parts.filter(|(key, _)| !key.is_empty()) else {
-            return Err(EXAMPLE.to_owned());
+            return Err(format!("{EXAMPLE}; files come before --vary"));
         };
         let number = |text: &str| {
             WrittenNumber::read(text)

@@ -5,6 +5,8 @@ use super::layout::{ColumnLayout, ColumnSpec, NAMES};
 use super::markers::{MarkerResidual, rigid_fit};
 use super::motion::{Channel, MeasuredMotion, Sign};
 use super::table::{TextTable, is_not_a_number, number};
+use std::cell::RefCell;
+use std::collections::BTreeSet;
 use teeter_scenario::diagnostic::printable;
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::quantity;
@@ -68,6 +70,7 @@ pub struct Measured {
     t: Vec<f64>,
     channels: Vec<(Channel, Vec<f64>)>,
     markers: Vec<Marker>,
+    unread: Vec<String>,
 }
 
 /// The coordinates of a marker.
@@ -83,6 +86,8 @@ struct Columns<'a> {
     table: &'a TextTable,
     /// Titles and units of the heading.
     names: Vec<(String, Option<String>)>,
+    /// The columns that were read.
+    read: RefCell<BTreeSet<usize>>,
 }
 
 impl Measured {
@@ -109,7 +114,7 @@ impl Measured {
             return Err(MeasuredError::NotText(at));
         }
         let table = TextTable::split(text, layout.separator, layout.skip)?;
-        let columns = Columns { table: &table, names: names(&table) };
+        let columns = Columns { table: &table, names: names(&table), read: RefCell::default() };
         let t = columns.times(layout, block)?;
         let mut markers = Vec::new();
         for spec in &layout.markers {
@@ -141,7 +146,7 @@ impl Measured {
             }
             channels.push((channel, values));
         }
-        let measured = Self { t, channels, markers };
+        let measured = Self { t, channels, markers, unread: columns.unread() };
         measured.check(&columns, block)?;
         Ok(measured)
     }
@@ -181,6 +186,12 @@ impl Measured {
             )));
         }
         Ok(())
+    }
+
+    /// The headings of columns that hold none of the quantities known here, and were not read.
+    #[must_use]
+    pub fn unread(&self) -> &[String] {
+        &self.unread
     }
 
     /// The motion as seen from one side.
@@ -289,7 +300,7 @@ impl Columns<'_> {
         }
         let names = match name {
             "t" => vec!["t".to_owned(), "time".to_owned()],
-            "phi" => vec![format!("{block}.phi"), "phi".to_owned(), "φ".to_owned()],
+            "phi" => vec![format!("{block}.phi"), "phi".to_owned(), "φ".to_owned(), "angle".to_owned()],
             name => vec![format!("{block}.{name}"), name.to_owned()],
         };
         let found = names.into_iter().find(|name| self.place(name).is_some())?;
@@ -297,19 +308,38 @@ impl Columns<'_> {
     }
 
     fn place(&self, column: &str) -> Option<usize> {
-        let wanted = column.trim().to_lowercase();
-        // As it stands there, with its unit, or by its title alone.
-        let whole =
-            self.table.heading.as_ref().and_then(|(_, cells)| cells.iter().position(|c| c.to_lowercase() == wanted));
-        let by_name = whole.or_else(|| self.names.iter().position(|(name, _)| name.to_lowercase() == wanted));
         let number = || column.trim().parse::<usize>().ok().and_then(|number| number.checked_sub(1));
-        by_name.or_else(|| number().filter(|place| *place < self.count()))
+        self.alike(column).first().copied().or_else(|| number().filter(|place| *place < self.count()))
+    }
+
+    /// The columns with this heading: as it stands there, with its unit, or by its title alone.
+    fn alike(&self, column: &str) -> Vec<usize> {
+        let wanted = column.trim().to_lowercase();
+        let headings = self.table.heading.iter().flat_map(|(_, cells)| cells);
+        let whole: Vec<usize> =
+            headings.enumerate().filter(|(_, cell)| cell.to_lowercase() == wanted).map(|(place, _)| place).collect();
+        if !whole.is_empty() {
+            return whole;
+        }
+        let titles = self.names.iter().enumerate();
+        titles.filter(|(_, (name, _))| name.to_lowercase() == wanted).map(|(place, _)| place).collect()
     }
 
     /// The values of a column in SI units; NaN for empty cells.
     fn read(&self, spec: &ColumnSpec, what: &str, dimension: Dimension) -> Result<Vec<f64>, MeasuredError> {
         let name = spec.column.as_deref().unwrap_or(what);
         let Some(place) = self.place(name) else { return Err(self.missing(name, what)) };
+        let alike = self.alike(name);
+        if alike.len() > 1 {
+            let numbers: Vec<String> = alike.iter().map(|place| (place + 1).to_string()).collect();
+            return Err(MeasuredError::Columns(format!(
+                "{} columns are headed `{}`, {}: name one by its number, such as --column {what}={}",
+                alike.len(),
+                printable(name),
+                numbers.join(" and "),
+                numbers[0]
+            )));
+        }
         if let Some((line, cells)) = self.table.heading.as_ref().filter(|(_, cells)| cells.len() != self.count()) {
             return Err(MeasuredError::line(
                 *line,
@@ -323,6 +353,7 @@ impl Columns<'_> {
                 MeasuredError::Columns(format!("the unit `{}` of {what}: {error}{}", printable(unit), remedy(&error)))
             })?,
         };
+        self.read.borrow_mut().insert(place);
         let mut values = Vec::with_capacity(self.table.rows.len());
         for (line, cells) in &self.table.rows {
             let cell = cells[place].as_str();
@@ -343,6 +374,17 @@ impl Columns<'_> {
             values.push(value);
         }
         Ok(values)
+    }
+
+    /// The headings of what was not read, without those of other bodies and beams, as in `trajectory.csv`.
+    fn unread(&self) -> Vec<String> {
+        let read = self.read.borrow();
+        let of_another = |cell: &str| cell.split_once('.').is_some_and(|(name, _)| !name.is_empty());
+        let headings = self.table.heading.iter().flat_map(|(_, cells)| cells).enumerate();
+        headings
+            .filter(|(place, cell)| !read.contains(place) && !of_another(cell))
+            .map(|(_, cell)| cell.clone())
+            .collect()
     }
 
     fn missing(&self, name: &str, what: &str) -> MeasuredError {

@@ -57,6 +57,9 @@ impl TextTable {
         if rows.is_empty() {
             return Err(MeasuredError::NoRows);
         }
+        if separator == ' ' {
+            heading = heading.map(|(line, cells)| (line, with_units(cells, columns)));
+        }
         Ok(Self { heading, rows, decimal_comma: separator != ',' })
     }
 }
@@ -64,6 +67,25 @@ impl TextTable {
 /// The separator of a row: the strongest that is there.
 fn found_separator(row: &str) -> char {
     [';', '\t', ','].into_iter().find(|&c| row.contains(c)).unwrap_or(' ')
+}
+
+/// The cells of a heading that was split at blanks, with each unit in brackets in the cell of its
+/// name; of a table of one column, one cell.
+fn with_units(cells: Vec<String>, columns: usize) -> Vec<String> {
+    if columns == 1 {
+        return vec![cells.join(" ")];
+    }
+    let is_unit = |cell: &str| {
+        [('[', ']'), ('(', ')')].iter().any(|(open, close)| cell.starts_with(*open) && cell.ends_with(*close))
+    };
+    let mut joined: Vec<String> = Vec::new();
+    for cell in cells {
+        match joined.last_mut().filter(|_| is_unit(&cell)) {
+            Some(name) => *name = format!("{name} {cell}"),
+            None => joined.push(cell),
+        }
+    }
+    joined
 }
 
 fn cells(line: &str, separator: char) -> Vec<String> {
@@ -125,6 +147,8 @@ mod tests {
             let values: Vec<f64> = found.rows.iter().map(|(_, cells)| value(&cells[1])).collect();
             assert_eq!(values, [1.5, 2.5], "{text}");
         }
+        assert_eq!(table("t [ms] phi (deg) x\n0 1.5 2\n").heading.unwrap().1, ["t [ms]", "phi (deg)", "x"]);
+        assert_eq!(table("phi of block [deg]\n1.5\n").heading.unwrap().1, ["phi of block [deg]"]);
         assert_eq!(table("t,\"angle, left\"\n0,1\n").heading.unwrap().1, ["t", "angle, left"]);
         assert_eq!(TextTable::split("made by us\nt,phi\n0,1\n", None, 1).unwrap().rows.len(), 1);
     }

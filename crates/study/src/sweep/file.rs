@@ -6,9 +6,8 @@ use super::find::{self, Find};
 use super::number::WrittenNumber;
 use super::output::Output;
 use super::spec::{Node, Reader, entries};
-use crate::{Setting, StudyScene};
-use teeter_scenario::diagnostic::{Diagnostic, Diagnostics};
-use teeter_scenario::keys::{self, PathTarget};
+use crate::Setting;
+use teeter_scenario::diagnostic::Diagnostics;
 
 /// Lists the files that match a pattern (its second argument), relative to the sweep file, as the
 /// scene (its first argument, relative to the sweep file) names them; or says why not.
@@ -128,32 +127,6 @@ impl Sweep {
         });
         let base = first.clone();
         std::iter::once(first).chain(named.map(move |setting| base.clone().with(&setting)))
-    }
-
-    /// Refuses keys that the scene can't have, which would make every case a refused one.
-    ///
-    /// # Errors
-    /// What is wrong with them.
-    pub fn check_keys(&self, source: &StudyScene, file: &str) -> Result<(), Diagnostics> {
-        let mut wrong = Diagnostics::default();
-        let searched = self.find.iter().map(|find| (find.key.clone(), find.low_text()));
-        for (key, value) in self.case(0).into_iter().chain(searched) {
-            if matches!(keys::find(&key), Some(PathTarget::Key(..))) {
-                continue;
-            }
-            let Err(found) = source.load(&Setting::none().set(key.clone(), value)) else { continue };
-            let about = |finding: &&Diagnostic| finding.set.as_ref().is_some_and(|set| set.starts_with(&key));
-            wrong.0.extend(found.iter().find(about).cloned().map(|finding| Diagnostic {
-                file: file.to_owned(),
-                set: None,
-                position: None,
-                span: None,
-                written: None,
-                path: key.clone(),
-                ..finding
-            }));
-        }
-        if wrong.has_errors() { Err(wrong) } else { Ok(()) }
     }
 
     /// Rules for the whole file.

@@ -9,6 +9,7 @@
 
 mod axes;
 mod case;
+mod check;
 mod criterion;
 mod figures;
 mod file;

@@ -58,6 +58,15 @@ impl Output {
         }
     }
 
+    /// The time of the row of that column that it is, s, if it is one.
+    #[must_use]
+    pub fn time(&self) -> Option<f64> {
+        match &self.origin {
+            Origin::Column { reduction: Reduction::At(t), .. } => Some(*t),
+            _ => None,
+        }
+    }
+
     /// The place in `summary.json` where it is found.
     #[must_use]
     pub fn summary_path(&self) -> Option<&str> {

@@ -1,8 +1,8 @@
 //! `compare.html`: a self-contained page in the style of a run's report.
 
 use super::motion_figures;
-use crate::compare::{ChannelComparison, Comparison, ImpactPair};
-use crate::measured::{Channel, Sign};
+use crate::compare::{ChannelComparison, Comparison, FEWEST, ImpactPair};
+use crate::measured::{Channel, MeasuredMotion, Sign};
 use crate::write::{html_list, html_table, percent, power, short};
 use std::fmt::Write;
 use teeter_plot::{AxisError, escaped};
@@ -101,7 +101,63 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
             percent(alignment.mismatch)
         ));
     }
+    texts.extend(
+        comparison
+            .channels
+            .iter()
+            .filter(|found| found.is_measured)
+            .filter_map(|found| without_motion(measured, found)),
+    );
+    texts.extend(tilt(comparison));
     texts
+}
+
+/// Says of a measured quantity that it shows no motion.
+fn without_motion(motion: &MeasuredMotion, found: &ChannelComparison) -> Option<String> {
+    let finite = |values: &[f64]| values.iter().copied().filter(|value| value.is_finite()).collect::<Vec<f64>>();
+    let rows = finite(motion.values(found.channel)?);
+    let values = finite(&found.measured.value);
+    let n = (values.len() as f64).max(1.0);
+    let mean = values.iter().sum::<f64>() / n;
+    let spread = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n).sqrt();
+    let word = found.channel.word();
+    if rows.iter().all(|value| *value == rows[0]) {
+        return Some(format!("the measured {word} is the same in all rows: is it the right column?"));
+    }
+    // Smoothing leaves less than the noise of the rows.
+    let (unit, factor) = found.channel.shown();
+    (spread <= found.measured.noise).then(|| {
+        format!(
+            "the measured {word} doesn’t rise above its noise, whose standard deviation is {} {unit}: is it the right column?",
+            power(factor * found.measured.noise)
+        )
+    })
+}
+
+/// The least part of the mean square difference of the angle that is told when a constant explains it.
+const CONSTANT_FROM: f64 = 0.25;
+
+/// Says that the angles are apart by a constant, if that is much of their difference.
+fn tilt(comparison: &Comparison) -> Option<String> {
+    let found = comparison.channel(Channel::Phi).filter(|found| found.is_measured)?;
+    let d = found.differences;
+    let uncertain = found.measured.noise / (d.rows as f64).sqrt();
+    let constant = d.mean.powi(2) >= CONSTANT_FROM * d.rms.powi(2) && d.mean.abs() > 5.0 * uncertain;
+    // Of motions that hardly match a constant says nothing, and one that is within their rounding isn't seen.
+    if !constant || d.mean.abs() < 1e-3 * d.scale || comparison.alignment.mismatch > 0.1 {
+        return None;
+    }
+    // While the block is held, nothing else sets them apart, and the shift found doesn't matter.
+    let mean = found.held.filter(|held| held.rows >= FEWEST).map_or(d.mean, |held| held.mean);
+    let offset = comparison.settings.offset - comparison.alignment.sign.factor() * mean;
+    let left = (d.rms.powi(2) - d.mean.powi(2)).max(0.0).sqrt();
+    Some(format!(
+        "the angles are apart by a constant, {}°, as if the camera or the block had stood tilted: with --offset \"{:.3} deg\" the \
+         root mean square difference would be {}° or less",
+        power(mean.abs().to_degrees()),
+        offset.to_degrees(),
+        power(left.to_degrees())
+    ))
 }
 
 fn quantity_row(found: &ChannelComparison) -> Vec<String> {

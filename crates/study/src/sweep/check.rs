@@ -1,0 +1,148 @@
+//! What a sweep file and its scene say together: refused before the first case is run.
+
+use super::Sweep;
+use super::find::Find;
+use super::output::Output;
+use super::spec::{Node, Reader, entries};
+use crate::{Setting, StudyScene};
+use serde_json::Value;
+use teeter_report::{EndedWord, Recorder, Summary};
+use teeter_scenario::diagnostic::{Diagnostic, Diagnostics};
+use teeter_scenario::keys::{self, PathTarget};
+use teeter_scenario::suggest::nearest;
+
+/// Parts of a summary that have all their keys in every run, whatever happens in it.
+const FIXED_PARTS: [&str; 2] = ["contact", "energy"];
+/// How many columns a message lists.
+const MOST_LISTED: usize = 20;
+
+/// What a run of a case offers to outputs.
+struct Offered {
+    columns: Vec<String>,
+    summary: Summary,
+}
+
+impl Sweep {
+    /// Refuses keys that the scene can't have, which would make every case a refused one.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    pub fn check_keys(&self, source: &StudyScene, file: &str) -> Result<(), Diagnostics> {
+        let mut wrong = Diagnostics::default();
+        let searched = self.find().map(|find| (find.key.clone(), find.low_text()));
+        for (key, value) in self.case(0).into_iter().chain(searched) {
+            if matches!(keys::find(&key), Some(PathTarget::Key(..))) {
+                continue;
+            }
+            let Err(found) = source.load(&Setting::none().set(key.clone(), value)) else { continue };
+            let about = |finding: &&Diagnostic| finding.set.as_ref().is_some_and(|set| set.starts_with(&key));
+            wrong.0.extend(found.iter().find(about).cloned().map(|finding| Diagnostic {
+                file: file.to_owned(),
+                set: None,
+                position: None,
+                span: None,
+                written: None,
+                path: key.clone(),
+                ..finding
+            }));
+        }
+        if wrong.has_errors() { Err(wrong) } else { Ok(()) }
+    }
+
+    /// Refuses outputs that no run of the scene has: a value that `summary.json` has in no run, or a
+    /// column that neither the first case has in `trajectory.csv` nor the last. `text` is that of
+    /// the sweep file, for the places of the findings.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    pub fn check_outputs(&self, source: &StudyScene, text: &str, file: &str) -> Result<(), Diagnostics> {
+        let last = self.cases().saturating_sub(1);
+        let offered: Vec<Offered> = [0, last]
+            .into_iter()
+            .take(if last > 0 { 2 } else { 1 })
+            .filter_map(|case| self.offered(source, case))
+            .collect();
+        let mut reader = Reader::new(file, text);
+        let root = reader.root()?;
+        let tables = entries(root.get_ref());
+        let written = tables.iter().find(|(name, _)| *name == "outputs").and_then(|(_, node)| node.table());
+        let places: Vec<(&str, Node<'_, '_>)> = written.map(entries).unwrap_or_default();
+        for output in self.outputs() {
+            let Some(Missing { rule, meant }) = missing(output, &offered) else { continue };
+            let place = places.iter().find(|(name, _)| *name == output.name()).map(|(_, node)| node);
+            let remedy = "run one case with `teeter run`, and take a number of its summary.json or a column of its \
+                trajectory.csv";
+            reader.wrong(&format!("outputs.{}", output.name()), place, &rule, remedy);
+            if let Some(finding) = reader.found.0.last_mut() {
+                finding.did_you_mean = meant;
+            }
+        }
+        if reader.found.has_errors() { Err(reader.into_findings()) } else { Ok(()) }
+    }
+
+    /// `None` where the case is refused.
+    fn offered(&self, source: &StudyScene, case: u64) -> Option<Offered> {
+        let scene = source.scene(&self.setting(case, self.find().map(Find::low_text).as_deref())).ok()?;
+        let simulation = source.simulation(&scene).ok()?;
+        let mut tell = |_: &str| {};
+        let recorder = Recorder::in_memory(&scene, &simulation.layout, &mut tell).ok()?;
+        let (header, _) = recorder.trajectory();
+        let columns = header.trim_end().split(',').map(str::to_owned).collect();
+        let record = recorder.into_record();
+        let (layout, state) = (&simulation.layout, &simulation.state);
+        let summary = Summary::without_records(&scene, layout, state, &record, EndedWord::Complete, 0.0);
+        Some(Offered { columns, summary })
+    }
+}
+
+/// Why an output can have no value, and what was probably meant.
+struct Missing {
+    rule: String,
+    meant: Option<String>,
+}
+
+/// `None` where a run can have the output.
+fn missing(output: &Output, offered: &[Offered]) -> Option<Missing> {
+    if let Some(path) = output.summary_path() {
+        return missing_value(path, offered.first().map(|offered| &offered.summary));
+    }
+    let name = output.column()?;
+    let first = offered.first()?;
+    if offered.iter().any(|offered| offered.columns.iter().any(|column| column == name)) {
+        return None;
+    }
+    let known: Vec<&str> = first.columns.iter().map(String::as_str).collect();
+    let more =
+        if known.len() > MOST_LISTED { format!(" and {} more", known.len() - MOST_LISTED) } else { String::new() };
+    let listed = known[..known.len().min(MOST_LISTED)].join(", ");
+    let rule = format!("trajectory.csv has no column {name}; it has {listed}{more}");
+    Some(Missing { rule, meant: nearest(name, known).map(str::to_owned) })
+}
+
+fn missing_value(path: &str, summary: Option<&Summary>) -> Option<Missing> {
+    let (key, inner) = path.split_once('.').map_or((path, None), |(key, inner)| (key, Some(inner)));
+    let rule = || format!("summary.json has no value at {path}");
+    if !Summary::KEYS.contains(&key) {
+        let near = nearest(key, Summary::KEYS);
+        let meant = near.map(|near| inner.map_or_else(|| near.to_owned(), |inner| format!("{near}.{inner}")));
+        return Some(Missing { rule: rule(), meant });
+    }
+    let inner = inner.filter(|_| FIXED_PARTS.contains(&key))?;
+    let mut now = &summary?.value(key)?;
+    let mut before = key.to_owned();
+    for part in inner.split('.') {
+        let map = match now {
+            Value::Object(map) => map,
+            // What a run may have.
+            Value::Null => return None,
+            _ => return Some(Missing { rule: rule(), meant: None }),
+        };
+        let Some(next) = map.get(part) else {
+            let near = nearest(part, map.keys().map(String::as_str));
+            return Some(Missing { rule: rule(), meant: near.map(|near| format!("{before}.{near}")) });
+        };
+        before = format!("{before}.{part}");
+        now = next;
+    }
+    None
+}
