@@ -6,6 +6,7 @@ use crate::progress::CaseBar;
 use crate::render::{Presenter, refusal};
 use crate::run::Exit;
 use std::error::Error;
+use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use teeter_report::Results;
@@ -279,7 +280,12 @@ pub(crate) fn merge_shards(folders: &[PathBuf], out: &Path, figure_width: f64, f
 /// Reads the sweep file and its scene; the text is the error to print.
 fn prepare(path: &Path, shard: Shard) -> Result<Study, String> {
     let name = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|error| format!("error: {name}: {error}"))?;
+    let text = std::fs::read_to_string(path).map_err(|error| match error.kind() {
+        ErrorKind::NotFound => format!("error: {name}: there is no such file"),
+        ErrorKind::IsADirectory => format!("error: {name}: is a folder, not a file"),
+        ErrorKind::InvalidData => format!("error: {name}: not a text file in UTF-8"),
+        _ => format!("error: {name}: {error}"),
+    })?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let listed = |scene: &str, pattern: &str| {
         let scene = folder.join(scene);

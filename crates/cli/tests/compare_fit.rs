@@ -485,7 +485,7 @@ fn what_a_table_shows_beside_the_motion_is_told() {
         assert!(output.status.success(), "{arguments:?}: {told}");
         (String::from_utf8(output.stdout).unwrap(), told)
     };
-    table("tilted.csv", "t,Angle (deg),Force (N)", &|row| format!("{},{},3\n", row[0], row[3].to_degrees() + 0.3));
+    table("tilted.csv", "t,phi (deg),Force (N)", &|row| format!("{},{},3\n", row[0], row[3].to_degrees() + 0.3));
     let (text, told) = compare(&["tilted.csv"]);
     assert!(text.contains("the angles are apart by a constant, 0.3°"), "{text}");
     assert!(text.contains("with --offset \"0.300 deg\""), "{text}");

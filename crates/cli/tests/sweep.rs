@@ -94,6 +94,11 @@ fn shards_merge_to_the_bytes_of_one_run_on_any_number_of_threads() {
     assert_eq!(String::from_utf8(missing.stderr).unwrap(), "error: shards are missing: 2/3\n");
     let twice = teeter(&folder, &["sweep", "--merge", "part-1", "part-1", "part-2", "part-3", "--out", "merged"]);
     assert_eq!(String::from_utf8(twice.stderr).unwrap(), "error: shard 1/3 is in part-1 and in part-1\n");
+    let nowhere = teeter(&folder, &["sweep", "--merge", "part-4", "--out", "merged"]);
+    assert_eq!(
+        String::from_utf8(nowhere.stderr).unwrap(),
+        "error: part-4: there is no such folder; a folder that `teeter sweep` has written is expected\n"
+    );
     let onto = teeter(&folder, &["sweep", "--merge", "part-1", "part-2", "part-3", "--out", "part-1", "--force"]);
     let told = String::from_utf8(onto.stderr).unwrap();
     assert!(told.contains("part-1 is one of the shards and stays as it is"), "{told}");

@@ -411,6 +411,44 @@ fn what_stopped_just_before_the_end_does_not_slide_on() {
 }
 
 #[test]
+fn what_slides_on_a_slope_does_so_up_or_down_it() {
+    let block = ROCKER.replace("height = '13.5 cm'", "height = '1 cm'");
+    for (incline, speed, way) in [
+        ("20 deg", 0.5, "up the slope"),
+        ("20 deg", -0.5, "down the slope"),
+        ("-20 deg", -0.5, "up the slope"),
+        ("0 deg", 0.5, "to the right"),
+        ("0 deg", -0.5, "to the left"),
+    ] {
+        let text = format!(
+            "[time]\nend = '0.4 s'\nstep = '200 us'\n[ground]\nincline = '{incline}'\n{block}velocity = ['{speed} m/s', '0 m/s']\n{FLOOR}"
+        );
+        let ran = scene(&format!("up-{incline}-{speed}"), &text.replace("friction = 0.5", "friction = 0.6"));
+        let headline = ran.summary["headline"].as_str().unwrap();
+        assert!(headline.contains("slid by") && headline.contains(way), "{incline} {speed}: {headline}");
+    }
+}
+
+#[test]
+fn what_turns_on_at_the_end_is_still_tipping() {
+    // Pushed by a tenth of what turns it over, it turns for a while and comes back.
+    let text = |end: &str, spin: f64| {
+        format!(
+            "[time]\nend = '{end}'\nstep = '200 us'\n[ground]\n{ROCKER}spin = '{spin} rad/s'\nvelocity = ['{} m/s', '{} m/s']\n{FLOOR}",
+            -0.0675 * spin,
+            0.015 * spin.abs()
+        )
+    };
+    let headline = |end: &str, spin: f64| {
+        scene(&format!("tips-{end}-{spin}"), &text(end, spin)).summary["headline"].as_str().unwrap().to_owned()
+    };
+    assert!(headline("20 ms", 1.0).contains("`b` is still tipping to the left: φ 0.8"), "{}", headline("20 ms", 1.0));
+    assert!(headline("20 ms", -1.0).contains("`b` is still tipping to the right: φ \u{2212}0.8"));
+    let back = headline("70 ms", 1.0);
+    assert!(back.contains("has not been upright yet"), "{back}");
+}
+
+#[test]
 fn a_disc_that_rolls_does_not_overturn() {
     let text = format!(
         "{TIME}[ground]\n[block.b]\nmaterial = 'a'\nradius = '5 cm'\ndepth = '3 cm'\nposition = ['0 m', '5 cm']\n\

@@ -2,6 +2,20 @@
 
 use crate::format::Format;
 
+/// An end of a cut, in words.
+fn bound(t: f64) -> String {
+    match t {
+        f64::INFINITY => "the end".to_owned(),
+        f64::NEG_INFINITY => "the start".to_owned(),
+        t => format!("{t} s"),
+    }
+}
+
+/// A time without the rounding of its sums.
+fn rounded(t: f64) -> f64 {
+    format!("{t:.9e}").parse().unwrap_or(t)
+}
+
 /// Why a file can't be read as a record, or a record can't be changed as requested. Lines count
 /// from 1.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -108,8 +122,10 @@ pub enum RecordError {
     },
     /// Times without a uniform step.
     #[error(
-        "line {line}: the time {time} s doesn't fit a uniform step: the other rows are {step} s apart, which gives {expected} s; use uniform \
-         times with enough digits, or the accelerations alone with their step"
+        "line {line}: the time {time} s doesn't fit a uniform step: the other rows are {} s apart, which gives {} s; use uniform \
+         times with enough digits, or the accelerations alone with their step",
+        rounded(*step),
+        rounded(*expected)
     )]
     Uneven {
         /// The line.
@@ -178,7 +194,7 @@ pub enum RecordError {
         range: &'static str,
     },
     /// A cut that leaves fewer than two values.
-    #[error("from {from} s to {to} s there are fewer than two values; the record covers 0 s to {duration} s")]
+    #[error("from {} to {} there are fewer than two values; the record covers 0 s to {duration} s", bound(*from), bound(*to))]
     Cut {
         /// Start of the cut, s.
         from: f64,

@@ -113,6 +113,9 @@ pub struct BodyVerdict {
     /// Of a block that rocks and has not been upright yet, nor turned back: its angle at the end, rad.
     #[serde(skip)]
     pub(crate) on_its_way: Option<f64>,
+    /// To which side it still turns, of one that does and never was farther than at the end.
+    #[serde(skip)]
+    pub(crate) tips: Option<Way>,
     /// Of a block that rests, but lies on none of its sides: its angle at the end, rad.
     #[serde(skip)]
     pub(crate) leans_at: Option<f64>,
@@ -349,7 +352,7 @@ impl Fates {
                 if let Some(part) = stance.part(q[2], slope) {
                     seen.part = Some(seen.part.map_or(part, |most| most.max(part)));
                 }
-                let way = if q[2] > stance.flat { Way::Left } else { Way::Right };
+                let way = Way::of(q[2] - stance.flat);
                 let edge = stance.edge(way);
                 let past = |angle: f64| way.sign() * (angle - edge.top);
                 if past(q[2]) <= 0.0 {
@@ -477,6 +480,12 @@ impl Seen {
             Placement::Free { angle, .. } => self.began.map(|_| self.angle - angle),
             Placement::On { .. } => None,
         };
+        let on_its_way = rocking.filter(|monitor| what == Fate::Rocks && monitor.count() == 0);
+        let tilt = layout.tilt(number, &state.q);
+        let turns_on = |monitor: &&RockingMonitor| {
+            let way = Way::of(tilt);
+            way.sign() * watched.velocity(layout, number, state)[2] > 0.0 && monitor.extreme().phi.abs() <= tilt.abs()
+        };
         BodyVerdict {
             body: layout.blocks[number].name.clone(),
             what,
@@ -484,7 +493,7 @@ impl Seen {
             way,
             overturned_at: overturned.map(|(t, _)| t),
             rests_from: rests,
-            leans_at: leans.then(|| layout.tilt(number, &state.q)),
+            leans_at: leans.then_some(tilt),
             lies_on,
             slid,
             max_phi_over_alpha: self.part,
@@ -492,9 +501,8 @@ impl Seen {
             still_from: self.still.filter(|_| rests.is_none()),
             stands_from: self.stands_from,
             tumbled: tumbled.filter(|turn| turn.abs() >= TUMBLED && what != Fate::Overturned),
-            on_its_way: rocking
-                .filter(|monitor| what == Fate::Rocks && monitor.count() == 0)
-                .map(|_| layout.tilt(number, &state.q)),
+            on_its_way: on_its_way.map(|_| tilt),
+            tips: on_its_way.filter(turns_on).map(|_| Way::of(tilt)),
         }
     }
 }

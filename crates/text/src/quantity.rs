@@ -84,6 +84,9 @@ impl QuantityError {
             Self::Syntax { .. } => {
                 Some("a unit is a product or quotient of powers, such as N s/m^2 or kg/m^3".to_owned())
             }
+            Self::WrongDimension { wanted: Dimension::ACCELERATION, unit, .. } if unit == "g" => {
+                Some("g is the gram; standard gravity is gn, as in \"0.4 gn\"".to_owned())
+            }
             _ => None,
         }
     }

@@ -80,9 +80,9 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     let way = of.way.map_or("", |way| way.word());
     let largest = of.max_phi_over_alpha.filter(|part| *part >= super::ROCKED);
     let largest = largest.map_or_else(String::new, |part| format!("largest φ/α {}", digits(part)));
-    let slid = of.slid.map_or_else(String::new, |slid| {
-        format!("slid by {} to the {}", with_unit(slid.abs(), "m"), if slid < 0.0 { "left" } else { "right" })
-    });
+    let slid = of
+        .slid
+        .map_or_else(String::new, |slid| format!("slid by {} {}", with_unit(slid.abs(), "m"), direction(scene, slid)));
     let beside = |text: String| if largest.is_empty() { text } else { format!("{text} ({largest})") };
     let tumbled = of.tumbled.map(|turn| format!("tumbled by {}, then ", angle(turn.abs())));
     // Where nothing is said, it rests on its base.
@@ -113,6 +113,9 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         Fate::Slid => beside(format!("slides on, {slid} so far")),
         Fate::Rocks if of.on_its_way.is_some() => {
             let now = of.on_its_way.map_or_else(String::new, angle);
+            if let Some(way) = of.tips {
+                return format!("is still tipping to the {}: φ {now} at {}", way.word(), time(end));
+            }
             let most = of.last_peak.map_or_else(String::new, |peak| format!(", largest {}{at}", angle(peak)));
             format!("has not been upright yet, too short a run to tell how it rocks: φ {now} at {}{most}", time(end))
         }
@@ -126,6 +129,22 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         Fate::Moves => beside("still moves".to_owned()),
     };
     format!("{}{fate}", tumbled.unwrap_or_default())
+}
+
+/// The slope of what carries blocks, rad, from which on sliding is told as up or down it.
+const STEEP: f64 = 0.01;
+
+/// In which direction something slid along what carries it.
+fn direction(scene: &Scene, slid: f64) -> &'static str {
+    let ground = scene.ground.as_ref().filter(|ground| ground.profile.is_none() && scene.beams.is_empty());
+    let [across, down] = [scene.gravity[0], -scene.gravity[1]];
+    let slope = ground.map_or(0.0, |ground| ground.incline - across.atan2(down));
+    match (slope.abs() >= STEEP, slid < 0.0) {
+        (true, _) if slope * slid > 0.0 => "up the slope",
+        (true, _) => "down the slope",
+        (false, true) => "to the left",
+        (false, false) => "to the right",
+    }
 }
 
 /// That a block is still at the end, in words, of one that is not known to rest.
@@ -189,7 +208,8 @@ fn all(verdict: &[BodyVerdict]) -> String {
         };
         tell(&resting, &what, "");
     }
-    let rocking = of(&[Fate::Rocks]);
+    let (tipping, rocking): (Vec<_>, Vec<_>) = of(&[Fate::Rocks]).into_iter().partition(|of| of.tips.is_some());
+    tell(&tipping, if tipping.len() == 1 { "is still tipping" } else { "are still tipping" }, "");
     tell(&rocking, if rocking.len() == 1 { "rocks on" } else { "rock on" }, "");
     let moving: Vec<_> = verdict
         .iter()

@@ -20,6 +20,11 @@ pub enum Way {
 }
 
 impl Way {
+    /// The side to which a tilt by this angle leans, rad.
+    pub(crate) fn of(tilt: f64) -> Self {
+        if tilt > 0.0 { Self::Left } else { Self::Right }
+    }
+
     /// +1 for a turn to the left, −1 for one to the right.
     pub(crate) fn sign(self) -> f64 {
         if self == Self::Left { 1.0 } else { -1.0 }

@@ -300,7 +300,7 @@ impl Columns<'_> {
         }
         let names = match name {
             "t" => vec!["t".to_owned(), "time".to_owned()],
-            "phi" => vec![format!("{block}.phi"), "phi".to_owned(), "φ".to_owned(), "angle".to_owned()],
+            "phi" => vec![format!("{block}.phi"), "phi".to_owned(), "φ".to_owned()],
             name => vec![format!("{block}.{name}"), name.to_owned()],
         };
         let found = names.into_iter().find(|name| self.place(name).is_some())?;

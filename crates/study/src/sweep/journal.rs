@@ -54,6 +54,16 @@ pub enum JournalError {
         /// What differs.
         source: SweepIdentityError,
     },
+    /// A folder without a study.
+    #[error(
+        "{}: {}; a folder that `teeter sweep` has written is expected",
+        folder.display(),
+        if folder.exists() { "there is no sweep.json in it" } else { "there is no such folder" }
+    )]
+    NoStudy {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// A shard that has not ended.
     #[error("{}: {missing} of its cases are still to do; continue it with --resume", folder.display())]
     Unfinished {
@@ -273,6 +283,15 @@ fn table(header: &str, rows: &[(u64, &str)]) -> String {
     all
 }
 
+/// What a folder says of its study.
+fn identity_text(folder: &Path) -> Result<String, JournalError> {
+    let place = folder.join(IDENTITY);
+    fs::read_to_string(&place).map_err(|source| match source.kind() {
+        io::ErrorKind::NotFound => JournalError::NoStudy { folder: folder.to_owned() },
+        _ => JournalError::Io { path: place, source },
+    })
+}
+
 /// Puts the results of all shards of a study together: the text of `results.csv` and that of the
 /// identity of the whole study. The bytes are those of one run of all cases.
 ///
@@ -284,9 +303,7 @@ pub fn merge(folders: &[PathBuf]) -> Result<(String, String), JournalError> {
     let mut texts = Vec::new();
     for folder in folders {
         let foreign = |source| JournalError::Foreign { folder: folder.clone(), source };
-        let place = folder.join(IDENTITY);
-        let text = fs::read_to_string(&place).map_err(io_error(&place))?;
-        let identity = SweepIdentity::from_json(&text).map_err(foreign)?;
+        let identity = SweepIdentity::from_json(&identity_text(folder)?).map_err(foreign)?;
         if let Some(study) = &study {
             study.admit_study(&identity).map_err(foreign)?;
             if study.shard().of() != identity.shard().of() {
@@ -325,10 +342,8 @@ pub fn merge(folders: &[PathBuf]) -> Result<(String, String), JournalError> {
 /// # Errors
 /// If the folder holds none, or one that hasn't ended.
 pub fn ended_study(folder: &Path, name: &str) -> Result<Ensemble, JournalError> {
-    let place = folder.join(IDENTITY);
-    let text = fs::read_to_string(&place).map_err(io_error(&place))?;
     let foreign = |source| JournalError::Foreign { folder: folder.to_owned(), source };
-    let identity = SweepIdentity::from_json(&text).map_err(foreign)?;
+    let identity = SweepIdentity::from_json(&identity_text(folder)?).map_err(foreign)?;
     // The values are in the table; the files that a pattern once matched need not be here.
     let as_written = |_: &str, pattern: &str| Ok(vec![pattern.to_owned()]);
     let sweep =
