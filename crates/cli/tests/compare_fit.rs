@@ -425,7 +425,7 @@ fn bad_measured_tables_are_refused_with_their_line() {
             format!("t,phi,phi\n{twice}").into_bytes(),
             "2 columns are headed `phi`, 2 and 3: name one by its number",
         ),
-        ("units", format!("t,phi [rad],phi [deg]\n{twice}").into_bytes(), "such as --column phi=2"),
+        ("units", format!("t,phi [rad],phi [rad]\n{twice}").into_bytes(), "such as --column phi=2"),
         ("other", format!("t,angel\n{rows}").into_bytes(), "no column of the motion of `rocker` is known"),
     ];
     let refused = |arguments: &[&str], says: &str| {

@@ -312,7 +312,8 @@ impl Columns<'_> {
         self.alike(column).first().copied().or_else(|| number().filter(|place| *place < self.count()))
     }
 
-    /// The columns with this heading: as it stands there, with its unit, or by its title alone.
+    /// The columns with this heading: as it stands there, with its unit, or by its title alone. In another unit a column holds
+    /// the same once more.
     fn alike(&self, column: &str) -> Vec<usize> {
         let wanted = column.trim().to_lowercase();
         let headings = self.table.heading.iter().flat_map(|(_, cells)| cells);
@@ -321,8 +322,9 @@ impl Columns<'_> {
         if !whole.is_empty() {
             return whole;
         }
-        let titles = self.names.iter().enumerate();
-        titles.filter(|(_, (name, _))| name.to_lowercase() == wanted).map(|(place, _)| place).collect()
+        let titles = || self.names.iter().enumerate().filter(|(_, (name, _))| name.to_lowercase() == wanted);
+        let unit = titles().next().map(|(_, (_, unit))| unit);
+        titles().filter(|(_, (_, other))| Some(other) == unit).map(|(place, _)| place).collect()
     }
 
     /// The values of a column in SI units; NaN for empty cells.

@@ -1,7 +1,7 @@
 //! The distribution of an output over an ensemble, and the comparison of several.
 
 use super::super::spec::{Node, Reader, entries};
-use super::label::label;
+use super::label::{common, label};
 use super::{Ensemble, SHARE_ROOM, StudyFigure, digits, text};
 use crate::statistics::{KolmogorovSmirnov, share_at_most};
 use crate::sweep::figures::overturning::number;
@@ -91,9 +91,11 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
     let asked: Vec<&Distribution> =
         studies.iter().filter_map(|study| study.sweep.wanted().distribution.as_ref()).collect();
     let samples: Vec<Samples> = studies.iter().zip(&asked).map(|(study, asked)| Samples::of(study, asked)).collect();
-    let first = || asked.first().zip(studies.first());
-    let label_of_axis = first().map(|(asked, study)| asked.label(study)).unwrap_or_default();
-    let by_label = first().and_then(|(asked, study)| Some(label(&study.sweep, asked.by.as_deref()?)));
+    let each = || asked.iter().zip(studies);
+    let label_of_axis = common(&each().map(|(asked, study)| asked.label(study)).collect::<Vec<_>>());
+    let by = |(asked, study): (&&Distribution, &Ensemble)| Some(label(&study.sweep, asked.by.as_deref()?));
+    let by_label =
+        Some(each().filter_map(by).collect::<Vec<_>>()).filter(|all| !all.is_empty()).map(|all| common(&all));
     let all = samples.iter().flat_map(|of| &of.by).flat_map(|(_, sample)| sample.iter().copied());
     let axis = Axis::linear(&label_of_axis, all)?;
     let end = axis.ends().1;

@@ -2,7 +2,7 @@
 
 use super::super::criterion::Criterion;
 use super::super::spec::{Node, Reader, entries};
-use super::label::label;
+use super::label::{common, label};
 use super::{Ensemble, SHARE_ROOM, StudyFigure, digits, text};
 use crate::statistics::{LognormalFit, NoFit, Observation, interval, resamples};
 use crate::write::quoted;
@@ -203,8 +203,8 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
             .zip(&asked)
             .map(|(study, asked)| Curve::of(Seen::of(study, asked, &asked.intensities[place])))
             .collect();
-        let label =
-            asked.first().zip(studies.first()).map(|(asked, study)| asked.label(place, study)).unwrap_or_default();
+        let labels: Vec<String> = asked.iter().zip(studies).map(|(asked, study)| asked.label(place, study)).collect();
+        let label = common(&labels);
         panels.push((label.clone(), parts.panel(studies, &label, &curves)?));
         parts.compared(studies, &label, &curves);
     }

@@ -54,6 +54,22 @@ pub(super) fn label(sweep: &Sweep, column: &str) -> String {
     output.and_then(of_output).unwrap_or_else(|| column.to_owned())
 }
 
+/// The label that studies have in common: where they differ only in what it belongs to, as the ground and the supports of a
+/// beam that are shaken, without that; else the first.
+pub(super) fn common(labels: &[String]) -> String {
+    let Some(first) = labels.first() else { return String::new() };
+    let apart = |label: &String| {
+        let (name, unit) = label.rsplit_once(" (").map_or((label.as_str(), ""), |(name, unit)| (name, unit));
+        let name = name.split_once(" of ").map_or(name, |(name, _)| name);
+        (name.to_owned(), unit.to_owned())
+    };
+    if labels.iter().all(|label| label == first) || labels.iter().any(|label| apart(label) != apart(first)) {
+        return first.clone();
+    }
+    let (name, unit) = apart(first);
+    if unit.is_empty() { name } else { format!("{name} ({unit}") }
+}
+
 fn of_key(key: &str) -> String {
     let unit = match find(key) {
         Some(PathTarget::Key(_, found)) => match found.kind {
@@ -143,6 +159,16 @@ mod tests {
         ] {
             assert_eq!(of_key(key), text);
         }
+    }
+
+    #[test]
+    fn studies_that_shake_different_things_have_a_label_in_common() {
+        let of = |keys: &[&str]| common(&keys.iter().map(|key| of_key(key)).collect::<Vec<_>>());
+        assert_eq!(of(&["ground.motion.x.peak", "beam.table.motion.x.peak"]), "Peak acceleration (m/s²)");
+        assert_eq!(of(&["contact.feet.friction", "contact.floor.friction"]), "Friction");
+        assert_eq!(of(&["contact.feet.friction", "contact.feet.friction"]), "Friction of feet");
+        assert_eq!(of(&["ground.motion.x.peak", "contact.feet.friction"]), "Peak acceleration of ground x (m/s²)");
+        assert_eq!(of(&[]), "");
     }
 
     #[test]
