@@ -408,6 +408,11 @@ fn what_stopped_just_before_the_end_does_not_slide_on() {
     let still = headline("still", "0.21 s");
     assert!(still.contains("and has been still since t = 20"), "{still}");
     assert!(headline("rested", "0.4 s").contains("came to rest"));
+    // What is shaken may slide again.
+    let shaken = "motion = { acceleration = ['1 m/s^2', '0 m/s^2'], signal = 's' }\n[signal.s]\nshape = 'harmonic'\nfrequency = '3 Hz'\n";
+    let shaken = text("0.25 s").replace("[ground]\n", &format!("[ground]\n{shaken}"));
+    let headline = scene("shaken-still", &shaken).summary["headline"].as_str().unwrap().to_owned();
+    assert!(headline.ends_with("to the right and is still at the end"), "{headline}");
 }
 
 #[test]

@@ -88,11 +88,10 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
             idle(&path, rule, "add friction, or leave it out");
         }
     }
-    let made_of: BTreeSet<&str> = document
-        .entries()
-        .filter(|(path, _)| path.ends_with(".material"))
-        .filter_map(|(path, _)| document.text(path))
-        .collect();
+    let of_bodies =
+        document.entries().filter(|(path, _)| path.ends_with(".material")).filter_map(|(path, _)| document.text(path));
+    let parts = document.names("block").into_iter().filter_map(|name| document.items(&format!("block.{name}.parts")));
+    let made_of: BTreeSet<&str> = of_bodies.chain(parts.flatten().filter_map(|part| part.text("material"))).collect();
     for name in document.names("material").into_iter().filter(|name| !made_of.contains(name)).take(LISTED) {
         idle(&format!("material.{name}"), "this material is not used".to_owned(), "use it in a body, or leave it out");
     }

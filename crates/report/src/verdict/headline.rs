@@ -109,7 +109,7 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         }
         Fate::Rests => beside(format!("came to rest{side}{at}")),
         Fate::Slid if of.rests_from.is_some() => beside(format!("{slid} and came to rest{side}{at}")),
-        Fate::Slid if of.still_from.is_some() => beside(format!("{slid}{}", still(of))),
+        Fate::Slid if of.still_from.is_some() => beside(format!("{slid}{}", still(scene, of, end))),
         Fate::Slid => beside(format!("slides on, {slid} so far")),
         Fate::Rocks if of.on_its_way.is_some() => {
             let now = of.on_its_way.map_or_else(String::new, angle);
@@ -125,7 +125,7 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             let drift = if drift { format!(", {slid}") } else { String::new() };
             beside(format!("rocks on{peak}{drift}"))
         }
-        Fate::Moves if of.still_from.is_some() => beside(format!("moved{}", still(of))),
+        Fate::Moves if of.still_from.is_some() => beside(format!("moved{}", still(scene, of, end))),
         Fate::Moves => beside("still moves".to_owned()),
     };
     format!("{}{fate}", tumbled.unwrap_or_default())
@@ -147,8 +147,11 @@ fn direction(scene: &Scene, slid: f64) -> &'static str {
     }
 }
 
-/// That a block is still at the end, in words, of one that is not known to rest.
-fn still(of: &BodyVerdict) -> String {
+/// That a block is still at the end, in words, of one that is not known to rest: while something shakes it, it may move again.
+fn still(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
+    if scene.settles_at() >= end {
+        return " and is still at the end".to_owned();
+    }
     let since = of.still_from.map_or_else(String::new, time);
     format!(" and has been still since {since}, too short a time to tell whether it rests")
 }

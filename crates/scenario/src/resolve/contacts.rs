@@ -265,7 +265,11 @@ impl Resolver<'_, '_> {
             })
             .collect();
         if found.is_empty() {
-            self.error(key, format!("no block or beam is of `{material}`"), "name a material that is used");
+            self.error(
+                key,
+                format!("no block or beam is of `{material}`"),
+                "name a material that a body has itself, not only a part of it",
+            );
             return None;
         }
         Some(found)

@@ -99,6 +99,9 @@ fn parts_of_several_materials_have_a_common_mass_centre() {
     let teeter_scenario::scene::Placement::Free { position, .. } = of.placement else { panic!("{of:?}") };
     assert_near(position[0], centre, 1e-12, "where it is drawn");
     assert_eq!((of.corner_name(4), of.corner_name(8)), ("part-2.bottom-left".to_owned(), "part-3.rim".to_owned()));
+    let found = load(text.as_bytes(), "scene", "scene", &[]).unwrap().warnings;
+    let warnings: Vec<String> = found.iter().map(ToString::to_string).collect();
+    assert!(!warnings.iter().any(|warning| warning.contains("not used")), "{warnings:?}");
 }
 
 #[test]
