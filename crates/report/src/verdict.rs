@@ -347,7 +347,9 @@ impl Fates {
             if seen.began.is_some() {
                 seen.stance = KnownStance(Some(stance));
             }
-            if let Some(mut stance) = stance {
+            // Past the end of its beam nothing carries it that it could overturn on.
+            let carried = seen.out.is_none() || seen.beyond.is_some();
+            if let Some(mut stance) = stance.filter(|_| carried) {
                 let slope = watched.slope(&state.q);
                 if let Some(part) = stance.part(q[2], slope) {
                     seen.part = Some(seen.part.map_or(part, |most| most.max(part)));

@@ -9,7 +9,7 @@ use teeter_beam::Axial;
 pub fn left_out(scene: &Scene) -> Vec<&'static str> {
     let mut left_out = Vec::new();
     if scene.beams.is_empty() {
-        left_out.push("no beam: no beam dofs, no factorisation");
+        left_out.push("beams and their factorisations: the scene has none");
     } else {
         let any = |is: fn(&BeamScene) -> bool| scene.beams.iter().any(is);
         if any(|beam| beam.spec.axial == Axial::Free) {

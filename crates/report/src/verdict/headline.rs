@@ -60,6 +60,11 @@ fn deflected(state: &State, deflections: &[LargestDeflection]) -> String {
     text
 }
 
+/// A part of a limit: what stays below it isn't rounded up to it.
+fn part(x: f64) -> String {
+    if x < 1.0 { digits(x.min(0.999)) } else { digits(x) }
+}
+
 /// A number with three digits, for prose.
 fn digits(x: f64) -> String {
     teeter_scenario::readable::shortest(x, 3)
@@ -79,7 +84,7 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     let at = of.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
     let way = of.way.map_or("", |way| way.word());
     let largest = of.max_phi_over_alpha.filter(|part| *part >= super::ROCKED);
-    let largest = largest.map_or_else(String::new, |part| format!("largest φ/α {}", digits(part)));
+    let largest = largest.map_or_else(String::new, |part| format!("largest φ/α {}", self::part(part)));
     let slid = of
         .slid
         .map_or_else(String::new, |slid| format!("slid by {} {}", with_unit(slid.abs(), "m"), direction(scene, slid)));
@@ -124,6 +129,9 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             let drift = of.slid.is_some_and(|_| has_slid(scene, of));
             let drift = if drift { format!(", {slid}") } else { String::new() };
             beside(format!("rocks on{peak}{drift}"))
+        }
+        Fate::Moves if of.still_from == Some(0.0) && scene.settles_at() < end => {
+            beside("has been still, too short a run to tell whether it rests".to_owned())
         }
         Fate::Moves if of.still_from.is_some() => beside(format!("moved{}", still(scene, of, end))),
         Fate::Moves => beside("still moves".to_owned()),
@@ -227,7 +235,7 @@ fn all(verdict: &[BodyVerdict]) -> String {
         text.push_str(&format!(
             "; largest φ/α of {} {}",
             if of_all { "all" } else { "those that stand" },
-            digits(largest)
+            part(largest)
         ));
     }
     text

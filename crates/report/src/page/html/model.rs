@@ -31,7 +31,8 @@ pub(super) fn model(summary: &Summary) -> String {
     row("Blocks", &list(&model.blocks));
     row("Beams", &list(&beams));
     row("Ground", if model.ground { "rigid" } else { "none" });
-    row("Contacts", &format!("{}; {} possible contacts", list(&model.contacts), model.possible_contacts));
+    let plural = if model.possible_contacts == 1 { "" } else { "s" };
+    row("Contacts", &format!("{}; {} possible contact{plural}", list(&model.contacts), model.possible_contacts));
     row("Degrees of freedom", &model.dofs.to_string());
     if !model.left_out.is_empty() {
         row("Left out", &model.left_out.iter().map(|text| escaped(text)).collect::<Vec<_>>().join("<br>"));
