@@ -54,11 +54,11 @@
   const overTheRaw = (lines, means) =>
     [...lines.filter(({ raw }) => raw), ...[...lines.filter(({ raw }) => !raw), ...means].sort((a, b) => a.index - b.index)];
 
-  /** Where the peaks of impacts would dwarf all else: the size to cut them at. */
-  function cutOf(series, least) {
+  /** Where the peaks of impacts would dwarf all else: the size to cut them at. Of means it depends on the time over which they are taken. */
+  function cutOf(series, least, over) {
     const sizes = series.flatMap(({ y }) => y.map(Math.abs).filter((f) => f > least)).sort((a, b) => a - b);
     const [usual, largest] = [sizes[Math.floor(0.9 * sizes.length)], sizes[sizes.length - 1]];
-    return largest > 6 * usual ? { limit: 3 * usual, largest } : undefined;
+    return largest > 6 * usual ? { limit: 3 * usual, largest, over } : undefined;
   }
 
   const strongest = Math.max(1e-300, ...forces.points.map(({ normal }) => normal.reduce((most, f) => Math.max(most, f), 0)));
@@ -89,7 +89,7 @@
       for (const line of lines) line.raw = means.some(({ index }) => index === line.index);
       const least = 1e-6 * strongest * factor;
       plots.add({
-        id: `${key}-${k}`, contact: k, title: title + suffix, unit: `${prefix}N`, series: overTheRaw(lines, means), cut: cutOf(lines, least), floor: 0, least, height: 150,
+        id: `${key}-${k}`, contact: k, title: title + suffix, unit: `${prefix}N`, series: overTheRaw(lines, means), cut: cutOf(lines, least, forces.bucket), floor: 0, least, height: 150,
       });
       if (means.length) {
         htmlElement("p", "note", `Pale: raw, the mean of each step or of a few. Strong: the mean over ${forces.window}.`, byId(`panel-${key}-${k}`));

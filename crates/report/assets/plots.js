@@ -61,7 +61,7 @@ const plots = (() => {
       const toggle = htmlElement("button", "link", "", row);
       toggle.type = "button";
       const say = () => {
-        toggle.textContent = panel.whole ? "cut the peaks" : `peaks cut, up to ${number(panel.cut.largest, 3)} ${panel.unit}: show all`;
+        toggle.textContent = panel.whole ? "cut the peaks" : `peaks cut, up to ${number(panel.cut.largest, 3)} ${panel.unit}${panel.cut.over ? ` over ${panel.cut.over}` : ""}: show all`;
       };
       toggle.addEventListener("click", () => {
         panel.whole = !panel.whole;

@@ -255,6 +255,11 @@ impl Curves {
         std::iter::once(self.start.0).chain(self.buckets.iter().map(|bucket| bucket.last)).collect()
     }
 
+    /// The longest time over which forces are means, s: a step or several.
+    pub(crate) fn longest_bucket(&self) -> f64 {
+        self.buckets.iter().map(|bucket| bucket.last - bucket.begin).fold(0.0, f64::max)
+    }
+
     /// A contact over time; `None` if it never carried anything.
     pub(crate) fn forces(&self, contact: usize) -> Option<ForceCurve> {
         let works = || self.works.iter().skip(contact).step_by(self.contacts.max(1));

@@ -127,7 +127,7 @@ impl Plots<'_> {
         });
         let lines: Vec<Series> = lines.collect();
         let label = format!("{} ({})", panel.title, panel.unit);
-        let (range, note) = if panel.cut { cut(&lines, panel.least, &panel.unit) } else { (None, None) };
+        let (range, note) = if panel.cut { cut(&lines, panel.least, &panel.unit, None) } else { (None, None) };
         let y = cut_axis(&label, range, &lines, panel.least);
         let contact = panel.of_contact.as_ref();
         let name = contact.map(|(_, name)| name.clone()).filter(|name| !name.is_empty());
@@ -273,7 +273,7 @@ impl Plots<'_> {
                 if what == "Tangential" && !self.panels.tangential[pair] {
                     continue;
                 }
-                let (range, cut) = cut(&lines, least, &unit);
+                let (range, cut) = cut(&lines, least, &unit, Some(self.panels.curves.longest_bucket()));
                 let name = (scenery.contacts.len() > 1)
                     .then(|| format!("{} on {}", scenery.blocks[contact.block].name, contact.surface));
                 let meant = (what == "Normal" && means.iter().any(Option::is_some))
@@ -372,13 +372,15 @@ fn stretches(borders: &[f64], states: &[ContactState]) -> Vec<(f64, f64, Colour)
     stretches
 }
 
-/// The range that shows the forces between impacts, where those would dwarf them.
-fn cut(lines: &[Series], least: f64, unit: &str) -> (Option<(f64, f64)>, Option<String>) {
+/// The range that shows the forces between impacts, where those would dwarf them. Of means the largest depends on the time
+/// over which they are taken (s).
+fn cut(lines: &[Series], least: f64, unit: &str, mean_over: Option<f64>) -> (Option<(f64, f64)>, Option<String>) {
     let sizes = values(lines).map(f64::abs).filter(|y| *y > least && y.is_finite()).collect();
     let Some((limit, largest)) = cut_at(sizes) else { return (None, None) };
     let negative = values(lines).any(|y| y < -0.01 * limit);
     let low = if negative { -limit } else { -0.06 * limit };
-    (Some((low, limit)), Some(format!("peaks cut, up to {} {unit}", shortest(largest, 3))))
+    let over = mean_over.map_or_else(String::new, |time| format!(" over {}", with_digits(time, "s", 2)));
+    (Some((low, limit)), Some(format!("peaks cut, up to {} {unit}{over}", shortest(largest, 3))))
 }
 
 /// The y axis of lines that may have been cut to a range.

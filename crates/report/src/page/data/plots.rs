@@ -134,6 +134,8 @@ pub(super) struct ForceData {
     units: Vec<[(&'static str, f64); 2]>,
     /// Length of the windows of `mean`, with its unit.
     window: String,
+    /// The longest time whose mean a force is, with its unit.
+    bucket: String,
     /// Contacts whose tangential forces are rounding.
     frictionless: Vec<usize>,
     points: Vec<PointForces>,
@@ -218,6 +220,7 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         borders: panels.curves.borders().into_iter().map(time).collect(),
         units: panels.force_units.clone(),
         window: with_digits(window, "s", 3),
+        bucket: with_digits(panels.curves.longest_bucket(), "s", 2),
         frictionless: (0..panels.tangential.len()).filter(|pair| !panels.tangential[*pair]).collect(),
         points: points.collect(),
     }
