@@ -254,6 +254,23 @@ fn the_verdict_of_every_scenario_is_what_its_trajectory_says() {
     assert!(checked > 50, "{checked} blocks were checked");
 }
 
+/// Stones that lie on others without being placed `on` them slide along those, not along their neighbours.
+#[test]
+fn a_course_of_a_wall_slides_on_the_one_below() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/dry-stone-wall.toml");
+    let ran = Ran::of(&file, &folder("verdict-wall"), &[]);
+    for (block, below) in
+        [("second-1", "lowest-1"), ("second-3", "lowest-3"), ("second-5", "lowest-6"), ("third-4", "second-5")]
+    {
+        let [x, base] = [block, below].map(|name| ran.column(&format!("{name}.x")));
+        let moved = |x: &[f64]| x[x.len() - 1] - x[0];
+        let slid = ran.verdict(block)["slid"].as_f64().unwrap();
+        assert!((slid - (moved(&x) - moved(&base))).abs() < 1e-6, "{block}: {slid}");
+    }
+    let headline = ran.summary["headline"].as_str().unwrap();
+    assert!(headline.contains("(5 after sliding)"), "{headline}");
+}
+
 const HEAD: &str =
     "[world]\ngravity = '9.81 m/s^2'\n[material.a]\ndensity = '2700 kg/m^3'\nyoungs_modulus = '69 GPa'\n";
 

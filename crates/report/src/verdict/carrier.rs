@@ -57,9 +57,7 @@ impl Carrier {
     pub(super) fn of(scene: &Scene, layout: &Layout, number: usize) -> Self {
         let support = |block: usize| match scene.blocks[block].placement {
             Placement::On { support, .. } => Some(support),
-            Placement::Free { .. } => {
-                scene.contacts.iter().find(|contact| contact.block == block).map(|contact| contact.surface)
-            }
+            Placement::Free { .. } => under(scene, block),
         };
         let of = |support: Option<SupportingBody>| match support {
             Some(SupportingBody::Beam(beam)) => On::Beam(beam, scene.beams[beam].position),
@@ -178,6 +176,36 @@ impl Carrier {
                 cos * (at[1] - origin[1]) - sin * (at[0] - origin[0]) < lowest
             }
         }
+    }
+}
+
+/// What a block that isn't placed on anything can touch: the block below it that it is most nearly above, or else what its first
+/// contact is with.
+fn under(scene: &Scene, block: usize) -> Option<SupportingBody> {
+    let [x, y] = centre(scene, block)?;
+    let reach = scene.blocks[block].radius();
+    let touched = scene.contacts.iter().filter_map(|contact| match contact.surface {
+        SupportingBody::Block(other) if contact.block == block => Some(other),
+        SupportingBody::Block(other) if other == block => Some(contact.block),
+        _ => None,
+    });
+    // Beside each other two blocks have their centres at much the same height.
+    let below = touched.filter_map(|other| {
+        let [a, b] = centre(scene, other)?;
+        let (across, down) = ((a - x).abs(), y - b);
+        (down > 0.25 * reach && across < reach + scene.blocks[other].radius()).then_some((across.hypot(down), other))
+    });
+    let nearest = below.min_by(|a, b| a.0.total_cmp(&b.0));
+    let first = || scene.contacts.iter().find(|contact| contact.block == block).map(|contact| contact.surface);
+    nearest.map(|(_, other)| SupportingBody::Block(other)).or_else(first)
+}
+
+/// About where a block begins: one on level ground at half its height; `None` on anything else.
+fn centre(scene: &Scene, block: usize) -> Option<[f64; 2]> {
+    match scene.blocks[block].placement {
+        Placement::Free { position, .. } => Some(position),
+        Placement::On { support: SupportingBody::Ground, at, .. } => Some([at, 0.5 * scene.blocks[block].height]),
+        Placement::On { .. } => None,
     }
 }
 
