@@ -74,6 +74,9 @@ const FLAT: f64 = 1e-9;
 /// it.
 const FACING: f64 = -0.25;
 
+/// Depths below two sides that differ by less than this part of the size of the shape are alike.
+const ALIKE: f64 = 1e-3;
+
 /// Summits under one side that are told apart.
 pub const MOST_SUMMITS: usize = 8;
 
@@ -118,7 +121,7 @@ pub(crate) fn each(
         }
         for (which, end) in ends.iter().enumerate().filter_map(|(which, end)| Some((which, (*end)?))) {
             let touch = side.touch(OnSide::End(which), &end).filter(|touch| touch.room >= 0.0);
-            if let Some(touch) = touch.filter(|touch| touch.gap >= 0.0 || side.holds(&end.place)) {
+            if let Some(touch) = touch.filter(|touch| touch.gap >= 0.0 || side.is_entered_by(&end)) {
                 push(&touch, margin, &mut each);
             }
         }
@@ -245,6 +248,23 @@ impl PlacedSide<'_> {
         let Outline { corners, normals, radius, frame, .. } = &self.outline;
         let local = frame.local(place);
         corners.iter().zip(*normals).all(|(corner, normal)| normal.dot(&(local - corner)) <= *radius)
+    }
+
+    /// Whether a point of the surface that lies inside the part came in through this side. An end that carries a base is on the boundary,
+    /// so that rounding decides whether it lies inside: then it is as deep below the far side as the part is thick, and belongs to the side
+    /// that it is least deep below; of sides that are alike in that, as at a corner, to the one that lies most squarely over the surface.
+    fn is_entered_by(&self, end: &SurfacePoint<2>) -> bool {
+        let Outline { corners, normals, frame, .. } = &self.outline;
+        let (local, up) = (frame.local(&end.place), frame.unturned(&end.normal));
+        let lies_over = || corners.iter().zip(*normals).filter(|(_, normal)| normal.dot(&up) < FACING);
+        let height = |(corner, normal): (&Vector<2>, &Vector<2>)| normal.dot(&(local - corner));
+        let size = corners.iter().map(|corner| corner.norm()).fold(0.0, f64::max);
+        let least = lies_over().map(height).fold(f64::NEG_INFINITY, f64::max) - ALIKE * size;
+        let squarest = lies_over().filter(|side| height(*side) >= least).map(|(_, normal)| normal.dot(&up));
+        let own = self.local_normal.dot(&up);
+        self.holds(&end.place)
+            && height((&self.local[0], &self.local_normal)) >= least
+            && squarest.fold(f64::INFINITY, f64::min) >= own
     }
 
     /// The contact of a point of the surface with the side's line; `None` if the side faces away

@@ -342,3 +342,30 @@ fn what_slides_off_a_beam_s_end_falls_freely() {
     assert!((v[0] - 1.0).abs() < 2e-3 && (v[1] + 5.766).abs() < 5e-3, "{v:?}");
     assert!(simulation.state.tally.max_penetration < 1e-5, "{:e}", simulation.state.tally.max_penetration);
 }
+
+/// What slides or tips over a beam's end touches it with its base, whatever rounding makes of the end, which lies on that: not with a side
+/// that faces the beam, too, as of a trapezoid, or once the block has tipped. Beside a fixed block with the same edge.
+#[test]
+fn what_goes_over_an_end_touches_it_with_one_side() {
+    let trapezoid = "shape = { kind = 'trapezoid', bottom = '10 cm', top = '14 cm', height = '6 cm' }\nvelocity = ['1.2 m/s', '0 m/s']";
+    for (name, shape, at, friction, end, wanted) in [
+        ("slides", trapezoid, "70 cm", 0.2, "0.6 s", [1.1140, -1.5005]),
+        ("tips", "width = '20 cm'\nheight = '10 cm'", "102 cm", 2.0, "0.3 s", [1.0659, -1.6057]),
+    ] {
+        for scheme in ["auto", "moreau-jean-closed", "moreau-jean"] {
+            let text = format!(
+                "[time]\nend = '{end}'\nstep = '100 us'\nscheme = '{scheme}'\n\
+                 [beam.b]\nsection = 'direct'\nbending_stiffness = '2000 N m^2'\nmass_per_length = '2 kg/m'\nthickness = '2 cm'\nspan = '1 m'\n\
+                 elements = 20\nsupports = ['clamped', 'clamped']\ndamping_ratio = {{ mode = 1, ratio = 0.05 }}\n\
+                 [block.d]\ndensity = '1500 kg/m^3'\ndepth = '10 cm'\n{shape}\non = 'b'\nat = '{at}'\n\
+                 [contact.c]\nbetween = ['d', 'b']\nfriction = {friction}\npoints = 'all'\n"
+            );
+            let resolved =
+                teeter_scenario::load(text.as_bytes(), "ends", "ends", &[]).unwrap_or_else(|e| panic!("{e}"));
+            let mut simulation = Simulation::new(&resolved.scene).unwrap();
+            simulation.run(&mut []).unwrap();
+            let q = &simulation.state.q[..3];
+            assert!((q[0] - wanted[0]).abs() < 2e-3 && (q[2] - wanted[1]).abs() < 5e-3, "{name}, {scheme}: {q:?}");
+        }
+    }
+}
