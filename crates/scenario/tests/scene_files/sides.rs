@@ -363,7 +363,7 @@ fn what_goes_over_an_end_touches_it_with_one_side() {
             let resolved =
                 teeter_scenario::load(text.as_bytes(), "ends", "ends", &[]).unwrap_or_else(|e| panic!("{e}"));
             let mut simulation = Simulation::new(&resolved.scene).unwrap();
-            simulation.run(&mut []).unwrap();
+            assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
             let q = &simulation.state.q[..3];
             assert!((q[0] - wanted[0]).abs() < 2e-3 && (q[2] - wanted[1]).abs() < 5e-3, "{name}, {scheme}: {q:?}");
         }
