@@ -4,6 +4,7 @@ use crate::figure::{Frame, LEFT, RIGHT, WIDTH};
 use crate::series::{Dash, Drawn, Mark};
 use crate::theme::{Colour, Theme};
 use crate::{Series, escaped};
+use std::borrow::Cow;
 use std::fmt::Write;
 
 /// The position of the legend; always outside the plot.
@@ -120,18 +121,20 @@ impl<'a> Entry<'a> {
 }
 
 impl Legend {
-    /// Row and left end of each entry above a panel; a note takes up the right of the first row.
+    /// Row and left end of each entry above a panel; a note takes up the right of the first row, or rows of its own above the entries if it is longer
+    /// than the figure is wide.
     fn rows(self, entries: &[Entry], note: Option<&str>, across: f64) -> Vec<(usize, f64)> {
-        let (mut row, mut x) = (0, LEFT);
-        let noted = note.map_or(0.0, |note| text_width(note) + GAP);
+        let lines = note_lines(note, across);
+        let (mut row, mut x) = (if lines.len() > 1 { lines.len() } else { 0 }, LEFT);
+        let noted = note.filter(|_| lines.len() == 1).map_or(0.0, |note| text_width(note) + GAP);
         let place = |entry: &Entry| {
             let right = across - RIGHT - if row == 0 { noted } else { 0.0 };
-            let full = x + SYMBOL + text_width(entry.name) > right;
+            let full = x + SYMBOL + text_width(&fitting(entry.name, across)) > right;
             if self == Self::Rows && full && (x > LEFT || noted > 0.0) {
                 (row, x) = (row + 1, LEFT);
             }
             let place = (row, x);
-            x += legend_width(entry.name);
+            x += legend_width(&fitting(entry.name, across));
             place
         };
         entries.iter().map(place).collect()
@@ -143,9 +146,10 @@ impl Legend {
     }
 
     fn last_row(self, entries: &[Entry], note: Option<&str>, across: f64) -> usize {
+        let of_note = note_lines(note, across).len().saturating_sub(1);
         match self {
-            Self::Row | Self::Beside => 0,
-            Self::Rows => self.rows(entries, note, across).last().map_or(0, |last| last.0),
+            Self::Beside => of_note,
+            Self::Row | Self::Rows => self.rows(entries, note, across).last().map_or(of_note, |last| last.0),
         }
     }
 
@@ -162,13 +166,14 @@ impl Legend {
     pub(crate) fn draw(self, svg: &mut String, theme: Theme, frame: &Frame, entries: &[Entry], note: Option<&str>) {
         let (top, across) = (frame.top, frame.across);
         let first = top - ABOVE - self.more_height(entries, note, across);
-        if let Some(note) = note {
+        for (k, line) in note_lines(note, across).iter().enumerate() {
             let _ = writeln!(
                 svg,
-                "<text x=\"{}\" y=\"{first:.2}\" text-anchor=\"end\" fill=\"{}\">{}</text>",
+                "<text x=\"{}\" y=\"{:.2}\" text-anchor=\"end\" fill=\"{}\">{}</text>",
                 across - RIGHT,
+                first + ROW * k as f64,
                 Colour::Muted.value(theme),
-                escaped(note)
+                escaped(line)
             );
         }
         if self == Self::Beside {
@@ -178,9 +183,40 @@ impl Legend {
             return;
         }
         for (entry, (row, x)) in entries.iter().zip(self.rows(entries, note, across)) {
-            entry.draw(svg, theme, x, first + ROW * row as f64);
+            let name = fitting(entry.name, across);
+            Entry { symbol: entry.symbol, name: &name }.draw(svg, theme, x, first + ROW * row as f64);
         }
     }
+}
+
+/// Room at the left of a note as long as the figure is wide.
+const NOTE_LEFT: f64 = 4.0;
+
+/// A note in as few lines as are as wide as the figure, broken between words; a word longer than that has a line of its own.
+fn note_lines(note: Option<&str>, across: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in note.into_iter().flat_map(|note| note.split(' ')) {
+        match lines.last_mut() {
+            Some(line) if text_width(line) + text_width(word) + 6.0 <= across - RIGHT - NOTE_LEFT => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// A name as it has room in a row of its own: of one that is longer, its beginning and its end.
+fn fitting(name: &str, across: f64) -> Cow<'_, str> {
+    let room = ((across - RIGHT - LEFT - SYMBOL) / text_width("n")).max(5.0) as usize;
+    let letters: Vec<char> = name.chars().collect();
+    if letters.len() <= room {
+        return Cow::Borrowed(name);
+    }
+    let (head, tail) = (room / 2, room - 1 - room / 2);
+    let end = &letters[letters.len() - tail..];
+    Cow::Owned(letters[..head].iter().chain(&['…']).chain(end).collect())
 }
 
 /// The pattern of a line that lies on others, which show in its gaps: all have the same period, each half the dashes of the one below.
@@ -251,6 +287,35 @@ mod tests {
             Legend::Rows.more_height(&entries, None, WIDTH) > 0.0
                 && Legend::Row.more_height(&entries, None, WIDTH) == 0.0
         );
+    }
+
+    #[test]
+    fn a_note_longer_than_the_figure_has_rows_of_its_own() {
+        let note = "second on first; pale: raw; mean over 20 ms; peaks cut, up to 300 N over 2 ms; one of many";
+        let narrow = 4.0 * 84.0;
+        let lines = note_lines(Some(note), narrow);
+        assert_eq!((lines.len(), lines.join(" ").as_str()), (2, note), "{lines:?}");
+        assert!(lines.iter().all(|line| text_width(line) <= narrow - RIGHT - NOTE_LEFT));
+        let entries = entries(&["a", "b"]);
+        assert_eq!(
+            Legend::Rows.rows(&entries, Some(note), narrow).iter().map(|place| place.0).collect::<Vec<_>>(),
+            [2, 2]
+        );
+        assert_eq!(Legend::Rows.more_height(&entries, Some(note), narrow), 2.0 * ROW);
+        assert_eq!(Legend::Row.more_height(&[], Some(note), narrow), ROW);
+        assert_eq!(Legend::Row.more_height(&entries, Some("short"), narrow), 0.0);
+    }
+
+    #[test]
+    fn a_name_too_long_for_the_figure_keeps_its_beginning_and_its_end() {
+        let name = "the-left-column-of-the-southern-portal: bottom left corner on the second course";
+        let shown = fitting(name, 4.0 * 84.0);
+        assert!(text_width(&shown) <= 4.0 * 84.0 - LEFT - RIGHT - SYMBOL, "{shown}");
+        assert!(
+            shown.starts_with("the-left-column") && shown.ends_with("second course") && shown.contains('…'),
+            "{shown}"
+        );
+        assert_eq!(fitting("short", 4.0 * 84.0), "short");
     }
 
     #[test]

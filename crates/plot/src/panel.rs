@@ -1,7 +1,7 @@
 //! A panel: series on axes, or rows of bands.
 
 use crate::figure::{Frame, LEFT};
-use crate::legend::{Entry, Legend, Symbol, area_style, mark_path, mark_style, stroke};
+use crate::legend::{Entry, Legend, Symbol, area_style, mark_path, mark_style, stroke, text_width};
 use crate::series::Drawn;
 use crate::theme::{Colour, Theme};
 use crate::{Axis, Series, escaped};
@@ -293,7 +293,7 @@ impl Panel {
         }
         svg.push_str("</g>\n");
         Self::draw_marks(svg, frame, theme, y, series, false);
-        self.draw_labels(svg, frame, theme, y);
+        self.draw_labels(svg, frame, theme, y, series);
         let ticks = self.ticks_at.iter().filter(|(x, _)| frame.x.contains(*x));
         let ticks: String = ticks
             .map(|&(x, part)| match part {
@@ -330,28 +330,101 @@ impl Panel {
         }
     }
 
-    fn draw_labels(&self, svg: &mut String, frame: &Frame, theme: Theme, y: &Axis) {
+    fn draw_labels(&self, svg: &mut String, frame: &Frame, theme: Theme, y: &Axis, series: &[Series]) {
         let ink = Colour::Ink.value(theme);
-        let mut above = f64::NEG_INFINITY;
+        let drawn = places(frame, y, series);
+        let mut taken: Vec<Text> = Vec::new();
         for (x, value, text) in self.labels.iter().filter(|(x, value, _)| frame.x.contains(*x) && y.contains(*value)) {
             let (px, py) = (frame.px(*x), frame.top + y.below_high(*value, frame.height));
-            // Towards the middle, so that no text leaves the frame.
-            let (side, anchor) = if px > LEFT + 0.6 * frame.width() { (-8.0, "end") } else { (8.0, "start") };
-            // Near the one before, on the other side of the point.
-            let raised = if (py - above).abs() < 12.0 || py - frame.top < 16.0 { 14.0 } else { -6.0 };
-            above = py;
+            let width = text_width(text);
+            // Towards the middle, above before below; of these the one that hides least.
+            let sides = if px > LEFT + 0.6 * frame.width() { [true, false] } else { [false, true] };
+            let all = sides.into_iter().flat_map(|before| [-6.0, 14.0].map(|raised| (before, raised)));
+            let text_at = |(before, raised): (bool, f64)| Text {
+                left: if before { px - 8.0 - width } else { px + 8.0 },
+                width,
+                base: py + raised,
+            };
+            let cost = |at: &(bool, f64)| {
+                let text = text_at(*at);
+                let hidden = drawn.iter().filter(|place| text.covers(**place)).count();
+                let over = taken.iter().filter(|other| text.meets(other)).count();
+                hidden + 1_000 * over + 100_000 * usize::from(!text.is_within(frame))
+            };
+            let Some(at) = all.min_by_key(cost) else { continue };
+            let place = text_at(at);
+            let (anchor_x, anchor) = if at.0 { (px - 8.0, "end") } else { (px + 8.0, "start") };
             let _ = writeln!(
                 svg,
                 "<circle cx=\"{px:.2}\" cy=\"{py:.2}\" r=\"5.5\" fill=\"none\" stroke=\"{ink}\" stroke-width=\"1\"/>\
-                 <text x=\"{:.2}\" y=\"{:.2}\" text-anchor=\"{anchor}\" fill=\"{ink}\" stroke=\"{}\" stroke-width=\"3\" \
+                 <text x=\"{anchor_x:.2}\" y=\"{:.2}\" text-anchor=\"{anchor}\" fill=\"{ink}\" stroke=\"{}\" stroke-width=\"3\" \
                  paint-order=\"stroke\">{}</text>",
-                px + side,
-                py + raised,
+                place.base,
                 Colour::Paper.value(theme),
                 escaped(text)
             );
+            taken.push(place);
         }
     }
+}
+
+/// A line of text where it may stand, in the units of the figure.
+struct Text {
+    left: f64,
+    width: f64,
+    /// Of its letters.
+    base: f64,
+}
+
+/// How far letters and marks reach up and down.
+const UP: f64 = 9.0;
+const DOWN: f64 = 3.0;
+
+impl Text {
+    fn covers(&self, (x, y): (f64, f64)) -> bool {
+        (self.left - DOWN..=self.left + self.width + DOWN).contains(&x)
+            && (self.base - UP - DOWN..=self.base + DOWN + DOWN).contains(&y)
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        (self.base - other.base).abs() < UP + DOWN
+            && self.left < other.left + other.width
+            && other.left < self.left + self.width
+    }
+
+    fn is_within(&self, frame: &Frame) -> bool {
+        let across = self.left >= LEFT && self.left + self.width <= LEFT + frame.width();
+        across && self.base - UP >= frame.top && self.base + DOWN <= frame.top + frame.height
+    }
+}
+
+/// Distance of the points on lines that a text is to leave free.
+const APART: f64 = 4.0;
+
+/// Where marks are, and points along lines.
+fn places(frame: &Frame, y: &Axis, series: &[Series]) -> Vec<(f64, f64)> {
+    let at = |&(px, value): &(f64, f64)| (frame.px(px), frame.top + y.below_high(value, frame.height));
+    let mut all = Vec::new();
+    for one in series {
+        let points: Vec<(f64, f64)> =
+            one.points().iter().map(at).filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
+        match one.drawn {
+            Drawn::Marks { .. } => all.extend(points),
+            Drawn::Line => {
+                for ends in points.windows(2) {
+                    let [(a, b), (c, d)] = [ends[0], ends[1]];
+                    let parts = ((c - a).hypot(d - b) / APART).ceil().clamp(1.0, 500.0);
+                    all.extend(
+                        (0..=parts as usize)
+                            .map(|k| k as f64 / parts)
+                            .map(|part| (a + part * (c - a), b + part * (d - b))),
+                    );
+                }
+            }
+            Drawn::Area | Drawn::Cells => {}
+        }
+    }
+    all
 }
 
 /// Grid lines at the ticks of both axes (of x only if it is logarithmic), and the labels of y; returns what the title of y says with them.
@@ -385,6 +458,9 @@ fn draw_grid(svg: &mut String, frame: &Frame, theme: Theme, y: &Axis) -> String 
     y_ticks.reading.title(&y.label)
 }
 
+/// Width of a stretch too short to be seen, px.
+const THINNEST: f64 = 0.8;
+
 fn draw_bands(svg: &mut String, frame: &Frame, theme: Theme, bands: &[Band]) {
     let (height, beside) = (row_height(bands), named_beside(bands));
     for (k, band) in bands.iter().enumerate() {
@@ -406,7 +482,7 @@ fn draw_bands(svg: &mut String, frame: &Frame, theme: Theme, bands: &[Band]) {
                 svg,
                 "<rect x=\"{a:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"10\" fill=\"{}\"/>",
                 top + 2.0,
-                b - a,
+                (b - a).max(THINNEST),
                 colour.value(theme)
             );
         }
@@ -474,6 +550,29 @@ mod tests {
         assert!(svg.contains(">a&lt;b</text>") && !svg.contains("outside"));
         let right = svg.split("<text").find(|piece| piece.contains(">right<")).unwrap();
         assert!(right.contains("text-anchor=\"end\""), "{right}");
+    }
+
+    #[test]
+    fn a_label_leaves_the_data_free() {
+        let axis = || Axis::between("", 0.0, 1.0);
+        // Data to the right of the point, above and below.
+        let cloud = (0..40).map(|k| (0.42 + 0.01 * f64::from(k), if k % 2 == 0 { 0.53 } else { 0.45 }));
+        let panel = Panel::new(axis()).with([Series::marks("", cloud, Mark::Circle)]);
+        let label = |panel: Panel| {
+            let svg = Figure::new("f", "f", axis()).panel(panel.labels([(0.4, 0.5, "for 1 %".to_owned())])).to_svg();
+            svg.split("<text").find(|piece| piece.contains(">for 1 %<")).unwrap().to_owned()
+        };
+        assert!(label(panel).contains("text-anchor=\"end\""), "to the left, where nothing is");
+        assert!(label(Panel::new(axis())).contains("text-anchor=\"start\""));
+    }
+
+    #[test]
+    fn a_touch_too_short_to_be_seen_is_a_tick_all_the_same() {
+        let short = Band::new("a", vec![(0.5, 0.500_001, Colour::Series(0))]);
+        let svg = Figure::new("f", "f", Axis::between("", 0.0, 1.0))
+            .panel(Panel::bands(vec![short], [(Colour::Series(0), "stick")]))
+            .to_svg();
+        assert!(svg.contains(&format!("width=\"{THINNEST:.2}\" height=\"10\"")), "{svg}");
     }
 
     #[test]
