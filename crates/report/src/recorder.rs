@@ -469,7 +469,7 @@ impl Observer<2> for Recorder<'_> {
             monitor.enter(state.t, self.layout.tilt(block, &state.q));
         }
         self.places.look(self.layout, state, &mut self.kept.record.deflections);
-        self.kept.record.fates.observe(&self.fate_watch, self.layout, step.t_start, state);
+        self.kept.record.fates.observe(&self.fate_watch, self.layout, step, state);
         if self.kept.schedule.takes(state.step, state.t) {
             self.write_rows(model, state)?;
         }

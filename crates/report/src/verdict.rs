@@ -4,18 +4,23 @@
 //! it follows from positions and velocities of blocks and what carries them: from what `trajectory.csv` has.
 
 mod carrier;
+mod falling;
+mod going;
 mod headline;
 mod lying;
 mod stance;
 mod standing;
 
 use carrier::Carrier;
+use falling::Joints;
+pub(crate) use going::Going;
+use going::Touched;
 pub(crate) use headline::headline;
 pub use lying::Side;
 use serde::{Deserialize, Serialize};
 use stance::{Edge, Outline, Stance};
 pub use stance::{SharedStances, Way};
-use teeter_integrator::{Mismatch, Model, RockingMonitor, State};
+use teeter_integrator::{Mismatch, Model, RockingMonitor, State, StepReport};
 use teeter_scenario::scene::{BlockScene, Placement, Scene, StopScene, SupportingBody};
 use teeter_scenario::simulation::Layout;
 
@@ -69,6 +74,8 @@ pub enum Fate {
     Left,
     /// It is below everything that could hold it.
     Sunk,
+    /// It fell from its place among other blocks that held it.
+    Fell,
     /// It came to rest where it stood.
     Rests,
     /// It slid, and may have come to rest.
@@ -86,11 +93,14 @@ pub struct BodyVerdict {
     pub body: String,
     /// What became of it.
     pub what: Fate,
-    /// When, s: overturned, left or sunk, came to rest; of a block that rocks on the last peak; null for others.
+    /// When, s: overturned, left, sunk or fell, came to rest; of a block that rocks on the last peak; null for others.
     pub t: Option<f64>,
     /// To which side it overturned or left its beam.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub way: Option<Way>,
+    /// When it had fallen from its place among other blocks, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fell_at: Option<f64>,
     /// When it passed the point of no return for good, s.
     pub overturned_at: Option<f64>,
     /// From when on it rests, s.
@@ -99,6 +109,9 @@ pub struct BodyVerdict {
     pub lies_on: Option<Side>,
     /// How far it slid along what carries it, from the start to the end, m; to the right positive.
     pub slid: Option<f64>,
+    /// The farthest that it was from where it stood, of one that slid back from there, m; to the right positive.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub farthest: Option<f64>,
     /// The largest |φ|/α.
     pub max_phi_over_alpha: Option<f64>,
     /// The last peak of its rocking, rad; of one that did not cross zero yet the largest angle.
@@ -122,6 +135,9 @@ pub struct BodyVerdict {
     /// Of a block that began in flight, turned over and settled: by how much it has turned at the end, rad.
     #[serde(skip)]
     pub(crate) tumbled: Option<f64>,
+    /// How it moves at the end, of one that does and has no other fate.
+    #[serde(skip)]
+    pub(crate) going: Option<Going>,
 }
 
 /// What is known of a block so far.
@@ -150,6 +166,14 @@ struct Seen {
     stands_from: Option<f64>,
     /// Where it began to stand along what carries it, m.
     stood: Option<f64>,
+    /// The farthest from there that it has been to the left and to the right, m.
+    reached: [f64; 2],
+    /// How high it was at the start, m; of a block that other blocks hold.
+    height: Option<f64>,
+    /// Since when it is lower than that by more than its thickness, s.
+    dropped: Option<f64>,
+    /// When it touched something.
+    touched: Touched,
     /// How it stands, or would if it settled at its angle, once known.
     #[serde(skip)]
     stance: KnownStance,
@@ -171,6 +195,8 @@ impl PartialEq for KnownStance {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Fates {
     blocks: Vec<Seen>,
+    /// What held them at the start.
+    joints: Joints,
     /// The time and stop that ended the run.
     stopped: Option<(f64, StopReason)>,
 }
@@ -191,6 +217,10 @@ struct Watched {
     outline: Option<Outline>,
     /// Largest distance of a point of it from the mass centre, m.
     reach: f64,
+    /// Whether it rolls on a round outline.
+    is_round: bool,
+    /// Its least width, m.
+    thickness: f64,
     /// m/s.
     still_speed: f64,
     /// How long it has to be still to rest, s.
@@ -217,6 +247,8 @@ impl Watch {
                 carrier: Carrier::of(scene, layout, number),
                 outline: Outline::of(block, scene.gravity),
                 reach,
+                is_round: corners.len() < 3,
+                thickness: falling::thickness(block),
                 still_speed: STILL * (gravity * reach).sqrt(),
                 still_time: (reach / gravity).sqrt(),
                 mass: of.map_or(0.0, |of| of.mass),
@@ -249,6 +281,12 @@ impl Watched {
         self.carrier.slope(q) - self.outline.as_ref().map_or(0.0, Outline::level)
     }
 
+    /// How high its mass centre is over what the scene stands on, m.
+    fn height(&self, layout: &Layout, number: usize, state: &State) -> f64 {
+        let q = &state.q[layout.blocks[number].range.clone()];
+        self.carrier.height([q[0], q[1]], layout, &state.q)
+    }
+
     /// Where its base stands along what carries it, m: put flat about the foot on which it is tilted.
     fn place(&self, layout: &Layout, number: usize, state: &State) -> Option<f64> {
         let [left, right] = self.feet?;
@@ -259,6 +297,17 @@ impl Watched {
         let half = 0.5 * (right[0] - left[0]);
         let foot = self.carrier.along([q[0] + cos * x - sin * y, q[1] + sin * x + cos * y], layout, &state.q);
         Some(foot + if ahead { half } else { -half })
+    }
+
+    /// How fast it moves, its spin as the speed of its farthest point, m/s: relative to what carries it or, if that is less, to what carries that. A
+    /// block may be still on a beam that bends slowly, and over one that rings under it by micrometres.
+    fn speed(&self, layout: &Layout, number: usize, state: &State) -> f64 {
+        let range = layout.blocks[number].range.clone();
+        let (q, v) = (&state.q[range.clone()], &state.v[range]);
+        let base = self.carrier.base_velocity([q[0], q[1]], layout, state);
+        let total = |[vx, vy, spin]: [f64; 3]| vx.hypot(vy) + self.reach * spin.abs();
+        let over_base = total([v[0] - base[0], v[1] - base[1], v[2] - base[2]]);
+        total(self.velocity(layout, number, state)).min(over_base)
     }
 
     /// Velocity and angular velocity relative to what carries it.
@@ -310,7 +359,8 @@ impl Fates {
         state: &State,
     ) -> Result<(), Mismatch> {
         self.blocks.clear();
-        let standing = standing::at_start(&watch.blocks, layout, model, state)?;
+        let (standing, touching) = standing::at_start(&watch.blocks, layout, model, state)?;
+        self.joints = Joints::new(&touching, &watch.blocks, layout, state);
         for (number, (watched, stands)) in watch.blocks.iter().zip(standing).enumerate() {
             let angle = state.q[layout.blocks[number].range.start + 2];
             // What was placed on something stands there on its base, however far that slopes or it is tilted: on a slope beyond α it is past the
@@ -318,15 +368,17 @@ impl Fates {
             let about = if watched.on.is_some() { 0.0 } else { angle };
             let stood = if stands { watched.place(layout, number, state) } else { None };
             let (began, stands_from) = (stands.then_some(about), stands.then_some(state.t));
-            self.blocks.push(Seen { began, angle, stands_from, stood, ..Seen::default() });
+            let height = (stands && self.joints.only_by_blocks(number)).then(|| watched.height(layout, number, state));
+            self.blocks.push(Seen { began, angle, stands_from, stood, height, ..Seen::default() });
         }
         self.look(watch, layout, state.t, state);
         Ok(())
     }
 
-    /// Takes a step in that began at `before` (s).
-    pub(crate) fn observe(&mut self, watch: &Watch, layout: &Layout, before: f64, state: &State) {
-        self.look(watch, layout, before, state);
+    /// Takes a step in.
+    pub(crate) fn observe(&mut self, watch: &Watch, layout: &Layout, step: &StepReport<'_, 2>, state: &State) {
+        self.look(watch, layout, step.t_start, state);
+        self.touch(step, state.t);
         if self.stopped.is_none() {
             self.stopped = self.stop(watch, state.t).map(|reason| (state.t, reason));
         }
@@ -373,8 +425,15 @@ impl Fates {
                 }
             }
             seen.angle = q[2];
-            let [vx, vy, spin] = watched.velocity(layout, number, state);
-            let speed = vx.hypot(vy) + watched.reach * spin.abs();
+            if let Some((from, to)) = seen.stood.zip(watched.place(layout, number, state)) {
+                let [left, right] = &mut seen.reached;
+                (*left, *right) = (left.min(to - from), right.max(to - from));
+            }
+            if let Some(height) = seen.height {
+                let drop = height - watched.height(layout, number, state);
+                seen.dropped = if drop > watched.thickness { seen.dropped.or(Some(t)) } else { None };
+            }
+            let speed = watched.speed(layout, number, state);
             seen.still = if speed <= watched.still_speed { seen.still.or(Some(t)) } else { None };
             if let Some(past) = watched.carrier.past_end([q[0], q[1]], layout, &state.q) {
                 seen.out = match past {
@@ -428,10 +487,13 @@ impl Fates {
         rocking: &[RockingMonitor],
     ) -> Vec<BodyVerdict> {
         let watch = Watch::of(scene, layout);
+        let any_dropped = self.blocks.iter().any(|seen| seen.dropped.is_some());
+        let loose = if any_dropped { self.loose(&watch, layout, state) } else { vec![false; self.blocks.len()] };
         let of = |(number, (seen, watched)): (usize, (&Seen, &Watched))| {
             (!watched.driven).then(|| {
                 let block = &scene.blocks[number];
-                seen.verdict(watched, (number, block), layout, state, rocking.get(number))
+                let fell = seen.dropped.filter(|_| loose[number]);
+                seen.verdict(watched, (number, block), layout, state, (rocking.get(number), fell))
             })
         };
         self.blocks.iter().zip(&watch.blocks).enumerate().filter_map(of).collect()
@@ -445,7 +507,7 @@ impl Seen {
         (number, block): (usize, &BlockScene),
         layout: &Layout,
         state: &State,
-        rocking: Option<&RockingMonitor>,
+        (rocking, fell): (Option<&RockingMonitor>, Option<f64>),
     ) -> BodyVerdict {
         let rests = Fates::rests(self, watched, state.t);
         let spin = state.v[layout.blocks[number].range.start + 2];
@@ -457,7 +519,7 @@ impl Seen {
             self.fallen || rests.is_some() || !comes_back()
         });
         let place = watched.place(layout, number, state);
-        let slid = self.stood.zip(place).map(|(from, to)| to - from).filter(|_| overturned.is_none());
+        let slid = self.stood.zip(place).map(|(from, to)| to - from).filter(|_| overturned.is_none() && fell.is_none());
         let base = watched.feet.map_or(f64::INFINITY, |[left, right]| right[0] - left[0]);
         let has_slid = slid.is_some_and(|slid| slid.abs() >= SLID * base);
         let rocked = self.part.is_some_and(|part| part >= ROCKED);
@@ -468,6 +530,7 @@ impl Seen {
             (Some((t, way)), ..) => (Fate::Overturned, Some(t), Some(way)),
             (None, Some((t, way)), ..) => (Fate::Left, Some(t), Some(way)),
             (None, None, Some(t), _) => (Fate::Sunk, Some(t), None),
+            _ if fell.is_some() => (Fate::Fell, fell, None),
             (None, None, None, Some(t)) if has_slid => (Fate::Slid, Some(t), None),
             (None, None, None, Some(t)) => (Fate::Rests, Some(t), None),
             _ if rocked => (Fate::Rocks, peak.map(|peak| peak.t), None),
@@ -493,10 +556,12 @@ impl Seen {
             what,
             t,
             way,
+            fell_at: fell,
             overturned_at: overturned.map(|(t, _)| t),
             rests_from: rests,
             leans_at: leans.then_some(tilt),
             lies_on,
+            farthest: slid.and_then(|slid| self.farthest(slid, SLID * base)),
             slid,
             max_phi_over_alpha: self.part,
             last_peak: peak.filter(|_| what == Fate::Rocks).map(|peak| peak.phi),
@@ -504,6 +569,9 @@ impl Seen {
             stands_from: self.stands_from,
             tumbled: tumbled.filter(|turn| turn.abs() >= TUMBLED && what != Fate::Overturned),
             on_its_way: on_its_way.map(|_| tilt),
+            going: (what == Fate::Moves && self.still.is_none())
+                .then(|| self.going(watched, layout, number, state))
+                .flatten(),
             tips: on_its_way.filter(turns_on).map(|_| Way::of(tilt)),
         }
     }

@@ -136,6 +136,17 @@ impl Carrier {
         }
     }
 
+    /// Velocity of what carries that: of a beam's supports, which move while it rings.
+    pub(super) fn base_velocity(&self, at: [f64; 2], layout: &Layout, state: &State) -> [f64; 3] {
+        match &self.root {
+            On::Beam(beam, _) => layout.beams[*beam]
+                .supports
+                .clone()
+                .map_or([0.0; 3], |range| [state.v[range.start], state.v[range.start + 1], 0.0]),
+            On::Ground(_) | On::Fixed | On::Block(_) => self.velocity(at, layout, state),
+        }
+    }
+
     /// Where a point is along what carries the block, m.
     pub(super) fn along(&self, at: [f64; 2], layout: &Layout, q: &[f64]) -> f64 {
         let (origin, slope) = match &self.on {
@@ -162,21 +173,32 @@ impl Carrier {
         Some(past(beam, position).filter(|_| !is_on_another()))
     }
 
+    /// How high a point is: over the ground, or over the supports of the beam that carries the block, or by its y, m.
+    pub(super) fn height(&self, at: [f64; 2], layout: &Layout, q: &[f64]) -> f64 {
+        match (&self.floor, &self.root) {
+            (Floor::Ground { slope, .. }, _) => over_ground(at, *slope, layout, q),
+            (_, On::Beam(beam, position)) => at[1] - beam_origin(*beam, *position, layout, q)[1],
+            _ => at[1],
+        }
+    }
+
     /// Whether a block with its mass centre at a point is below everything that could hold it.
     pub(super) fn is_below(&self, at: [f64; 2], reach: f64, layout: &Layout, q: &[f64]) -> bool {
         match self.floor {
             Floor::None => false,
             Floor::Beams { lowest } => at[1] + reach < lowest,
-            Floor::Ground { lowest, slope } => {
-                let (origin, slope) = layout
-                    .ground
-                    .as_ref()
-                    .map_or(([0.0; 2], slope), |range| ([q[range.start], q[range.start + 1]], q[range.start + 2]));
-                let (sin, cos) = slope.sin_cos();
-                cos * (at[1] - origin[1]) - sin * (at[0] - origin[0]) < lowest
-            }
+            Floor::Ground { lowest, slope } => over_ground(at, slope, layout, q) < lowest,
         }
     }
+}
+
+/// How high a point is over the origin of the ground, across its slope (rad, while it doesn't move), m.
+fn over_ground(at: [f64; 2], slope: f64, layout: &Layout, q: &[f64]) -> f64 {
+    let still = ([0.0; 2], slope);
+    let ground = layout.ground.as_ref();
+    let (origin, slope) = ground.map_or(still, |range| ([q[range.start], q[range.start + 1]], q[range.start + 2]));
+    let (sin, cos) = slope.sin_cos();
+    cos * (at[1] - origin[1]) - sin * (at[0] - origin[0])
 }
 
 /// What a block that isn't placed on anything can touch: the block below it that it is most nearly above, or else what its first

@@ -1,6 +1,6 @@
 //! What became of a scene, in a sentence.
 
-use super::{BodyVerdict, Fate, Side};
+use super::{BodyVerdict, Fate, Going, Side};
 use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
 use teeter_integrator::State;
@@ -22,11 +22,16 @@ pub(crate) fn headline(
         few if few.len() <= FEW => {
             few.iter().map(|of| format!("`{}` {}", of.body, one(scene, of, state.t))).collect::<Vec<_>>().join("; ")
         }
-        many => all(many),
+        many => all(scene, many),
     };
     let borne = beams.iter().filter_map(|beam| Some((beam.part_of_yield_strength?, beam)));
     if let Some((part, beam)) = borne.max_by(|a, b| a.0.total_cmp(&b.0)) {
-        text.push_str(&format!("; `{}` was stressed to {} % of its yield strength", beam.beam, digits(100.0 * part)));
+        // After impacts the third digit is that of the step.
+        let most = if verdict.is_empty() { 3 } else { 2 };
+        let cap = if verdict.is_empty() { 99.9 } else { 99.0 };
+        let percent = if part < 1.0 { (100.0 * part).min(cap) } else { 100.0 * part };
+        let percent = teeter_scenario::readable::shortest(percent, most);
+        text.push_str(&format!("; `{}` was stressed to {percent} % of its yield strength", beam.beam));
     } else if verdict.is_empty() {
         let known = beams.iter().filter_map(|beam| Some((beam.largest_stress?, beam)));
         if let Some((largest, beam)) = known.max_by(|a, b| a.0.stress.total_cmp(&b.0.stress)) {
@@ -79,17 +84,23 @@ fn angle(phi: f64) -> String {
     format!("{}°", digits(phi.to_degrees()).replace('-', "\u{2212}"))
 }
 
+/// An angle by which something turned: in degrees, or in turns from two on.
+fn turns(phi: f64) -> String {
+    let turns = phi / std::f64::consts::TAU;
+    if turns < 2.0 { angle(phi) } else { format!("{} turns", digits(turns)) }
+}
+
 /// What became of a block up to the time `end` (s), after its name.
 fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     let at = of.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
     let way = of.way.map_or("", |way| way.word());
     let largest = of.max_phi_over_alpha.filter(|part| *part >= super::ROCKED);
     let largest = largest.map_or_else(String::new, |part| format!("largest φ/α {}", self::part(part)));
-    let slid = of
-        .slid
-        .map_or_else(String::new, |slid| format!("slid by {} {}", with_unit(slid.abs(), "m"), direction(scene, slid)));
+    let by = |way: f64| format!("{} {}", with_unit(way.abs(), "m"), direction(scene, way));
+    let back = of.farthest.map_or_else(String::new, |way| format!(" after up to {}", by(way)));
+    let slid = of.slid.map_or_else(String::new, |slid| format!("slid by {}{back}", by(slid)));
     let beside = |text: String| if largest.is_empty() { text } else { format!("{text} ({largest})") };
-    let tumbled = of.tumbled.map(|turn| format!("tumbled by {}, then ", angle(turn.abs())));
+    let tumbled = of.tumbled.map(|turn| format!("tumbled by {}, then ", turns(turn.abs())));
     // Where nothing is said, it rests on its base.
     let side = side_below(of).filter(|_| of.lies_on != Some(Side::Base)).unwrap_or_default();
     let then_rested = of
@@ -97,6 +108,9 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         .filter(|_| of.what != Fate::Rests)
         .map_or_else(String::new, |t| format!(", came to rest{} at {}", side_below(of).unwrap_or_default(), time(t)));
     let fate = match of.what {
+        Fate::Overturned if of.t == Some(0.0) => {
+            format!("began past its critical angle and overturned to the {way}{then_rested}")
+        }
         Fate::Overturned => format!("overturned to the {way}{at}{then_rested}"),
         Fate::Left => {
             let block = scene.blocks.iter().find(|block| block.name == of.body);
@@ -108,9 +122,12 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             beside(format!("left {beam} at its {way} end{at}{then_rested}"))
         }
         Fate::Sunk => format!("fell below everything that could hold it{at}"),
+        Fate::Fell => format!("fell from its place{at}{then_rested}"),
         Fate::Rests if of.t == Some(0.0) => {
             let how = if side.is_empty() { "stood" } else { "lay" };
-            beside(format!("{how} still{side} throughout"))
+            let on = if side.is_empty() { moving_base(scene) } else { "" };
+            let still = if on.is_empty() { " still" } else { "" };
+            beside(format!("{how}{still}{on}{side} throughout"))
         }
         Fate::Rests => beside(format!("came to rest{side}{at}")),
         Fate::Slid if of.rests_from.is_some() => beside(format!("{slid} and came to rest{side}{at}")),
@@ -134,7 +151,10 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             beside("has been still, too short a run to tell whether it rests".to_owned())
         }
         Fate::Moves if of.still_from.is_some() => beside(format!("moved{}", still(scene, of, end))),
-        Fate::Moves => beside("still moves".to_owned()),
+        Fate::Moves => match of.going {
+            Some(going) => beside(format!("is still {}", going.word())),
+            None => beside("still moves".to_owned()),
+        },
     };
     format!("{}{fate}", tumbled.unwrap_or_default())
 }
@@ -164,6 +184,19 @@ fn still(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     format!(" and has been still since {since}, too short a time to tell whether it rests")
 }
 
+/// On what blocks rest, in words, where that moves by itself: to an onlooker they move with it.
+fn moving_base(scene: &Scene) -> &'static str {
+    let moves = |given: bool| given.then_some(());
+    let ground = scene.ground.as_ref().and_then(|ground| moves(ground.motion.is_given()));
+    let supports = || moves(scene.beams.iter().any(|beam| beam.motion.is_given()));
+    let blocks = || moves(scene.blocks.iter().any(|block| block.motion.is_given()));
+    match (ground, supports(), blocks()) {
+        (Some(()), ..) => " on the moving ground",
+        (None, Some(()), _) | (None, None, Some(())) => " on what moves under it",
+        (None, None, None) => "",
+    }
+}
+
 /// How a block that rests does so, in words after "came to rest"; `None` of what has no sides.
 fn side_below(of: &BodyVerdict) -> Option<String> {
     let leans = of.leans_at.map(|phi| format!(" at φ = {}", angle(phi)));
@@ -176,7 +209,7 @@ fn has_slid(scene: &Scene, of: &BodyVerdict) -> bool {
 }
 
 /// What became of many blocks.
-fn all(verdict: &[BodyVerdict]) -> String {
+fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
     let of = |fates: &[Fate]| verdict.iter().filter(|of| fates.contains(&of.what)).collect::<Vec<_>>();
     let by_time =
         |a: &&&BodyVerdict, b: &&&BodyVerdict| a.t.unwrap_or(f64::INFINITY).total_cmp(&b.t.unwrap_or(f64::INFINITY));
@@ -188,7 +221,10 @@ fn all(verdict: &[BodyVerdict]) -> String {
         let of_all = if parts.is_empty() && found.len() < total { format!(" of {total}") } else { String::new() };
         let blocks = if parts.is_empty() { " blocks" } else { "" };
         let way = earliest.way.map_or_else(String::new, |way| format!(" to the {}", way.word()));
-        let when = earliest.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
+        let when = match earliest.t {
+            Some(0.0) if earliest.what == Fate::Overturned => " from the start".to_owned(),
+            t => t.map_or_else(String::new, |t| format!(" at {}", time(t))),
+        };
         // One that is different from the rest is named.
         if let ([one], "", false) = (found, first, parts.is_empty()) {
             parts.push(format!("`{}` {what}", one.body));
@@ -197,7 +233,12 @@ fn all(verdict: &[BodyVerdict]) -> String {
         let which = if first.is_empty() { String::new() } else { format!(", {first} `{}`{way}{when}", earliest.body) };
         parts.push(format!("{count}{of_all}{blocks} {what}{which}"));
     };
-    tell(&of(&[Fate::Overturned]), "overturned", "first");
+    let collapsed = verdict.iter().any(|of| of.what == Fate::Fell);
+    if collapsed {
+        tell(&of(&[Fate::Fell, Fate::Overturned]), "fell or overturned", "first");
+    } else {
+        tell(&of(&[Fate::Overturned]), "overturned", "first");
+    }
     tell(&of(&[Fate::Left]), "left their beam", "first");
     tell(&of(&[Fate::Sunk]), "fell below everything", "first");
     let resting: Vec<_> =
@@ -212,7 +253,10 @@ fn all(verdict: &[BodyVerdict]) -> String {
         let told = told.collect::<Vec<_>>().join(", ");
         let how = if told.is_empty() { told } else { format!(" ({told})") };
         let what = if last == 0.0 {
-            "stood still throughout".to_owned()
+            match moving_base(scene) {
+                "" => "stood still throughout".to_owned(),
+                on => format!("stood{on} throughout"),
+            }
         } else {
             let when = if resting.len() == 1 { " at" } else { ", last at" };
             format!("came to rest{how}{when} {}", time(last))
@@ -222,21 +266,32 @@ fn all(verdict: &[BodyVerdict]) -> String {
     let (tipping, rocking): (Vec<_>, Vec<_>) = of(&[Fate::Rocks]).into_iter().partition(|of| of.tips.is_some());
     tell(&tipping, if tipping.len() == 1 { "is still tipping" } else { "are still tipping" }, "");
     tell(&rocking, if rocking.len() == 1 { "rocks on" } else { "rock on" }, "");
-    let moving: Vec<_> = verdict
-        .iter()
-        .filter(|of| of.what == Fate::Moves || (of.what == Fate::Slid && of.rests_from.is_none()))
-        .collect();
+    for going in Going::ALL {
+        let these: Vec<_> = verdict.iter().filter(|of| of.going == Some(going)).collect();
+        tell(&these, &format!("{} still {}", if these.len() == 1 { "is" } else { "are" }, going.word()), "");
+    }
+    let sliding: Vec<_> = of(&[Fate::Slid]).into_iter().filter(|of| of.rests_from.is_none()).collect();
+    let (still, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(|of| of.still_from.is_some());
+    tell(&sliding, if sliding.len() == 1 { "slides on" } else { "slide on" }, "");
+    let of_moves: Vec<_> = of(&[Fate::Moves]).into_iter().filter(|of| of.going.is_none()).collect();
+    let (at_end, moving): (Vec<_>, Vec<_>) = of_moves.into_iter().partition(|of| of.still_from.is_some());
+    let still: Vec<_> = still.into_iter().chain(at_end).collect();
+    tell(&still, if still.len() == 1 { "stands still at the end" } else { "stand still at the end" }, "");
     tell(&moving, if moving.len() == 1 { "still moves" } else { "still move" }, "");
-    let others = || verdict.iter().filter(|of| of.what != Fate::Overturned).map(|of| of.max_phi_over_alpha);
+    let others = || {
+        let stayed = verdict.iter().filter(|of| !matches!(of.what, Fate::Fell | Fate::Overturned));
+        stayed.map(|of| of.max_phi_over_alpha)
+    };
     let largest = others().flatten().fold(0.0, f64::max);
     let of_all = parts.len() == 1 && others().all(|part| part.is_some());
     let mut text = parts.join("; ");
     if largest >= super::ROCKED {
-        text.push_str(&format!(
-            "; largest φ/α of {} {}",
-            if of_all { "all" } else { "those that stand" },
-            part(largest)
-        ));
+        let whose = match (of_all, collapsed) {
+            (true, _) => "all",
+            (false, true) => "those that neither fell nor overturned",
+            (false, false) => "those that didn't overturn",
+        };
+        text.push_str(&format!("; largest φ/α of {whose} {}", part(largest)));
     }
-    text
+    if collapsed { format!("collapsed: {text}") } else { text }
 }

@@ -9,16 +9,17 @@ use teeter_scenario::simulation::Layout;
 
 /// A block that began in flight has settled when it was unable to turn over by itself for this many √(R/g). In free fall as long as that its speed
 /// is at some time 2 √(gR) or more, and then its energy 2 m g R, which no point of no return asks for: so it has landed.
-const SETTLED: f64 = 4.0;
+pub(super) const SETTLED: f64 = 4.0;
 
 /// Which blocks stand at the start: those that were placed on ground, a beam or a block whose motion is prescribed, or are joined to one of them by
-/// closed contacts, a chain of them; and those so little above what stands that by their fall and their speed they can't turn over.
+/// closed contacts, a chain of them; and those so little above what stands that by their fall and their speed they can't turn over. With them, which
+/// blocks touch, by their numbers: a number beyond the blocks is ground or a beam.
 pub(super) fn at_start(
     blocks: &[Watched],
     layout: &Layout,
     model: &Model<2>,
     state: &State,
-) -> Result<Vec<bool>, Mismatch> {
+) -> Result<(Vec<bool>, Vec<[usize; 2]>), Mismatch> {
     // All that is no free block has one number, after the blocks.
     let fixed = blocks.len();
     let node = |block: usize| if blocks.get(block).is_some_and(|of| !of.driven) { block } else { fixed };
@@ -38,11 +39,19 @@ pub(super) fn at_start(
     }
     // More than a contact counts as closed at, and than the fall that as little energy takes as turns a block over.
     let farthest = blocks.iter().map(|block| 2.0 * block.reach).fold(0.0, f64::max);
-    let mut candidates = Vec::new();
+    let (mut candidates, mut touching) = (Vec::new(), Vec::new());
     model.candidates(&state.q, farthest, &mut candidates)?;
     for candidate in &candidates {
         let [a, b] = [0, 1].map(|side| of_body(candidate.sides[side].body));
         let closed = candidate.gap <= layout.openings.of_pair(candidate.id.pair()).gap;
+        if closed {
+            let driven = |number: usize| blocks.get(number).is_some_and(|of| of.driven);
+            let bodies = [0, 1].map(|side| candidate.sides[side].body.0 as usize);
+            // A driven block is held itself: what it touches is told by the blocks.
+            if !bodies.into_iter().all(driven) && touching.last() != Some(&bodies) {
+                touching.push(bodies);
+            }
+        }
         for (side, [upper, lower]) in [[a, b], [b, a]].into_iter().enumerate() {
             let block = blocks.get(upper).filter(|_| upper != fixed);
             // Known without a search for its stance, which takes long.
@@ -62,7 +71,7 @@ pub(super) fn at_start(
         }
     }
     stands.truncate(fixed);
-    Ok(stands)
+    Ok((stands, touching))
 }
 
 impl Watched {

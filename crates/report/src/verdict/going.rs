@@ -1,0 +1,100 @@
+//! How a block moves that does so at the end of a run and has no other fate: it bounces, rolls, slides or falls (`docs/verdict.md`).
+
+use super::standing::SETTLED;
+use super::{Fates, Seen, Watched};
+use serde::{Deserialize, Serialize};
+use teeter_integrator::{State, StepReport};
+use teeter_scenario::simulation::Layout;
+
+/// How a block moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Going {
+    /// It falls: it never touched anything, or is lower than where it last did.
+    Falls,
+    /// It flies: without gravity, or upwards from the start.
+    Flies,
+    /// It is in the air after a landing, or was so a short time ago.
+    Bounces,
+    /// A round one turns about as fast as it goes.
+    Rolls,
+    /// A round one goes without turning as fast.
+    Slides,
+}
+
+impl Going {
+    /// All of them, in the order in which many blocks are told.
+    pub(super) const ALL: [Self; 5] = [Self::Falls, Self::Flies, Self::Bounces, Self::Rolls, Self::Slides];
+
+    /// What it does, after "is still".
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Falls => "falling",
+            Self::Flies => "in flight",
+            Self::Bounces => "bouncing",
+            Self::Rolls => "rolling",
+            Self::Slides => "sliding",
+        }
+    }
+}
+
+/// When a block touched something.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Touched {
+    /// The end of the last step in which a contact pressed on it, s.
+    last: Option<f64>,
+    /// The end of the last step in which none did, s.
+    free: Option<f64>,
+    /// Whether it came down on something after such a step.
+    landed: bool,
+}
+
+impl Fates {
+    /// Takes the contacts of a step in that ended at `t` (s).
+    pub(super) fn touch(&mut self, step: &StepReport<'_, 2>, t: f64) {
+        let pressing = step.active().flat_map(|part| part.contacts).filter(|contact| contact.p[0] > 0.0);
+        for body in pressing.flat_map(|contact| [0, 1].map(|side| contact.sides[side].body.0 as usize)) {
+            let Some(Seen { touched, .. }) = self.blocks.get_mut(body) else { continue };
+            touched.landed |= touched.free.is_some() && touched.last.is_none_or(|last| Some(last) < touched.free);
+            touched.last = Some(t);
+        }
+        for Seen { touched, .. } in &mut self.blocks {
+            if touched.last != Some(t) {
+                touched.free = Some(t);
+            }
+        }
+    }
+}
+
+impl Seen {
+    /// How it moves; `None` of one that does so in no way that has a word, such as one that shakes where it stands.
+    pub(super) fn going(&self, watched: &Watched, layout: &Layout, number: usize, state: &State) -> Option<Going> {
+        let [vx, vy, spin] = watched.velocity(layout, number, state);
+        let (t, Touched { last, free, landed }) = (state.t, self.touched);
+        if last != Some(t) {
+            // In free flight it is where it last touched something again when its speed has turned round.
+            let is_above = |last: f64| vy > -0.5 * watched.gravity * (t - last);
+            return Some(match last {
+                _ if watched.gravity == 0.0 => Going::Flies,
+                None if vy > 0.0 => Going::Flies,
+                Some(last) if landed && is_above(last) => Going::Bounces,
+                Some(last) if is_above(last) => Going::Flies,
+                _ => Going::Falls,
+            });
+        }
+        let was_free = free.is_some_and(|free| t - free <= SETTLED * watched.still_time);
+        if landed && was_free {
+            return Some(Going::Bounces);
+        }
+        if !watched.is_round {
+            return None;
+        }
+        Some(if 2.0 * watched.reach * spin.abs() >= vx.hypot(vy) { Going::Rolls } else { Going::Slides })
+    }
+
+    /// The farthest that it was from where it stood, if it has slid back by more than `least` (m) from there to where it is, `slid` (m).
+    pub(super) fn farthest(&self, slid: f64, least: f64) -> Option<f64> {
+        let back = |reached: &f64| (reached - slid).abs();
+        let farther = self.reached.into_iter().filter(|reached| reached.abs() > least && back(reached) > least);
+        farther.max_by(|a, b| back(a).total_cmp(&back(b)))
+    }
+}
