@@ -219,10 +219,17 @@ fn fitting(name: &str, across: f64) -> Cow<'_, str> {
     Cow::Owned(letters[..head].iter().chain(&['…']).chain(end).collect())
 }
 
-/// The pattern of a line that lies on others, which show in its gaps: all have the same period, each half the dashes of the one below.
-fn over(lines: u8) -> String {
-    let dash = 8.0 / f64::from(1_u32 << lines.min(3));
-    format!("{dash} {}", 8.0 - dash)
+/// Up to so many lines below, each later one has dashes half as long as those of the one below.
+const HALVED: u8 = 3;
+
+/// The pattern of a line that lies on others, which show in its gaps: all have the same period. Where a line lies on more than [`HALVED`] others (`most`),
+/// each shows as much as any other.
+fn over(lines: u8, most: u8) -> String {
+    if most <= HALVED {
+        let dash = 8.0 / f64::from(1_u32 << lines);
+        return format!("{dash} {}", 8.0 - dash);
+    }
+    format!("{} {}", 4 * (u32::from(most) + 1 - u32::from(lines)), 4 * u32::from(lines))
 }
 
 /// Dash patterns that distinguish lines of the same colour.
@@ -233,7 +240,7 @@ pub(crate) fn stroke(number: usize, dash: Dash, theme: Theme) -> String {
     let by_number = DASHES[number / crate::theme::SERIES_COLOURS % DASHES.len()];
     let dash = match dash {
         Dash::ByNumber => by_number.to_owned(),
-        Dash::Over(lines) => over(lines),
+        Dash::Over(lines, most) => over(lines.min(most), most),
     };
     let colour = Colour::Series(number);
     format!("stroke=\"{}\" stroke-dasharray=\"{dash}\"", colour.value(theme))
@@ -272,6 +279,14 @@ mod tests {
 
     fn entries<'a>(names: &[&'a str]) -> Vec<Entry<'a>> {
         names.iter().map(|name| Entry { symbol: Symbol::Line { number: 0, dash: Dash::ByNumber }, name }).collect()
+    }
+
+    #[test]
+    fn each_of_many_lines_on_each_other_shows() {
+        assert_eq!([1, 2, 3].map(|lines| over(lines, 3)), ["4 4", "2 6", "1 7"]);
+        // Of seven, what the next one leaves free of each is four units long.
+        let dashes = [1, 2, 3, 4, 5, 6].map(|lines| over(lines, 6));
+        assert_eq!(dashes, ["24 4", "20 8", "16 12", "12 16", "8 20", "4 24"]);
     }
 
     #[test]

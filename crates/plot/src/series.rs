@@ -20,8 +20,8 @@ pub struct Series {
 pub(crate) enum Dash {
     /// Its number.
     ByNumber,
-    /// It lies on another line, or on so many that lie on each other.
-    Over(u8),
+    /// It lies on another line, or on so many (the first number) that lie on each other; the most that any line of the panel does (the second).
+    Over(u8, u8),
 }
 
 /// How a series is drawn.
@@ -148,10 +148,17 @@ impl Series {
             let below =
                 before.iter().filter(|earlier| rest[0].lies_on(earlier, tolerance)).map(|earlier| match earlier.dash {
                     Dash::ByNumber => 0,
-                    Dash::Over(lines) => lines,
+                    Dash::Over(lines, _) => lines,
                 });
             if let Some(lines) = below.max() {
-                rest[0].dash = Dash::Over(lines.saturating_add(1));
+                rest[0].dash = Dash::Over(lines.saturating_add(1), 0);
+            }
+        }
+        let lines_below = |line: &Self| if let Dash::Over(lines, _) = line.dash { lines } else { 0 };
+        let most = lines.iter().map(lines_below).max().unwrap_or(0);
+        for line in lines {
+            if let Dash::Over(_, of) = &mut line.dash {
+                *of = most;
             }
         }
     }
@@ -184,7 +191,7 @@ mod tests {
         let mut lines = [line(0.0), line(0.2), line(0.4), line(9.0)];
         Series::tell_apart(&mut lines, 0.3);
         // The third lies on the second alone, which has dashes already.
-        let dashes = [Dash::ByNumber, Dash::Over(1), Dash::Over(2), Dash::ByNumber];
+        let dashes = [Dash::ByNumber, Dash::Over(1, 2), Dash::Over(2, 2), Dash::ByNumber];
         assert_eq!(lines.each_ref().map(|line| line.dash), dashes);
     }
 
