@@ -375,6 +375,9 @@ enum Command {
         /// profile.md to DIR
         #[arg(long, value_name = "DIR", conflicts_with = "tolerance")]
         profile: Option<PathBuf>,
+        /// Width of the profiles: 84 mm and 174 mm are one and two columns of most journals
+        #[arg(long = "figure-width", value_name = "WIDTH", default_value = "120 mm", value_parser = record::figure_width, requires = "profile")]
+        figure_width: f64,
         /// Replace solutions or profiles of an earlier solve
         #[arg(long)]
         force: bool,
@@ -680,9 +683,19 @@ fn main() -> ExitCode {
             fit::fit(&options).into()
         }
         Command::Solvers => solve::list().into(),
-        Command::Solve { paths, solvers, tolerance, time_limit, json, solutions, profile, force } => {
-            solve::solve(&solve::Options { paths, solvers, tolerance, time_limit, json, solutions, profile, force })
-                .into()
+        Command::Solve { paths, solvers, tolerance, time_limit, json, solutions, profile, figure_width, force } => {
+            solve::solve(&solve::Options {
+                paths,
+                solvers,
+                tolerance,
+                time_limit,
+                json,
+                solutions,
+                profile,
+                figure_width,
+                force,
+            })
+            .into()
         }
         Command::New { file, from, list, force } => new::new(&new::Options { file, from, list, force }).into(),
         Command::Completions { shell } => shell::completions(shell).into(),

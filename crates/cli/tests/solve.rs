@@ -91,7 +91,7 @@ fn a_table_has_a_row_for_each_file_and_solver() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     let table = text(&output.stdout);
     let lines: Vec<Vec<&str>> = table.lines().map(|line| line.split_whitespace().collect()).collect();
-    assert_eq!(lines[0].join(" "), "file solver contacts outcome residual iter. time/ms asym.");
+    assert_eq!(lines[0].join(" "), "file solver contacts outcome residual iter. time asym.");
     let begin: Vec<_> = lines[1..].iter().map(|cells| cells[..5].join(" ")).collect();
     assert_eq!(
         begin,

@@ -12,12 +12,12 @@ pub(super) struct Curve {
 /// Height of the plot, mm.
 const HEIGHT: f64 = 70.0;
 
-/// A performance profile as SVG.
-pub(super) fn profile(title: &str, curves: &[Curve]) -> Result<String, String> {
-    draw(title, curves).map_err(|error| format!("error: the figure «{title}» can't be drawn: {error}"))
+/// A performance profile as SVG, of a width in mm.
+pub(super) fn profile(title: &str, curves: &[Curve], width: f64) -> Result<String, String> {
+    draw(title, curves, width).map_err(|error| format!("error: the figure «{title}» can't be drawn: {error}"))
 }
 
-fn draw(title: &str, curves: &[Curve]) -> Result<String, AxisError> {
+fn draw(title: &str, curves: &[Curve], width: f64) -> Result<String, AxisError> {
     let ratios = curves.iter().flat_map(|curve| &curve.steps).map(|step| step.0);
     // At least from the best time to twice that.
     let x = Axis::logarithmic("Time, as a multiple of the best solver's for the problem", ratios.chain([1.0, 2.0]))?;
@@ -28,7 +28,8 @@ fn draw(title: &str, curves: &[Curve]) -> Result<String, AxisError> {
         Series::staircase(&curve.name, [(1.0, 0.0)].into_iter().chain(steps), end)
     });
     let panel = Panel::new(Axis::between("Problems solved (%)", 0.0, 102.0)).with(series);
-    Ok(Figure::new("profile", title, x).headed().legend(Legend::Beside).panel(panel.height_mm(HEIGHT)).to_svg())
+    let figure = Figure::new("profile", title, x).headed().legend(Legend::Rows).width_mm(width);
+    Ok(figure.panel(panel.height_mm(HEIGHT)).to_svg())
 }
 
 #[cfg(test)]
@@ -38,10 +39,10 @@ mod tests {
     #[test]
     fn a_figure_names_every_solver_also_one_that_solves_nothing() {
         let curve = |k: usize| Curve { name: format!("s{k} (0 of 1)"), steps: vec![(1.0 + k as f64, 1.0); k % 2] };
-        let svg = profile("t", &(0..14).map(curve).collect::<Vec<_>>()).unwrap();
+        let svg = profile("t", &(0..14).map(curve).collect::<Vec<_>>(), 84.0).unwrap();
         assert!((0..14).all(|k| svg.contains(&format!("s{k} (0 of 1)"))));
-        assert!(svg.starts_with("<svg") && svg.contains("Problems solved (%)"));
-        assert!(profile("nobody solves anything", &[]).is_ok());
-        assert!(profile("no time", &[Curve { name: String::new(), steps: vec![(f64::NAN, 1.0)] }]).is_err());
+        assert!(svg.contains(" width=\"84mm\"") && svg.contains("Problems solved (%)"));
+        assert!(profile("nobody solves anything", &[], 120.0).is_ok());
+        assert!(profile("no time", &[Curve { name: String::new(), steps: vec![(f64::NAN, 1.0)] }], 120.0).is_err());
     }
 }

@@ -30,6 +30,8 @@ pub(crate) struct Options {
     pub(crate) json: bool,
     pub(crate) solutions: Option<PathBuf>,
     pub(crate) profile: Option<PathBuf>,
+    /// Of the profiles, m.
+    pub(crate) figure_width: f64,
     pub(crate) force: bool,
 }
 
@@ -154,7 +156,7 @@ fn solve_all(console: Console, options: &Options, inputs: &[Input], choice: &Cho
     }
     drop(progress);
     if let Some(folder) = &options.profile {
-        profile::write(folder, &rows, options.time_limit)?;
+        profile::write(folder, &rows, options.time_limit, 1e3 * options.figure_width)?;
         console.note(&format!("profile in {}", folder.join("profile.md").display()));
     }
     Ok(())

@@ -7,7 +7,7 @@
 
 use super::figure::{self, Curve};
 use super::machine;
-use super::rows::{CSV_HEADER, Row, significant};
+use super::rows::{CSV_HEADER, Row, in_its_unit};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs::File;
@@ -79,7 +79,7 @@ impl<'a> SolverComparison<'a> {
         figure_name(self.dimension, self.tolerance)
     }
 
-    fn figure(&self) -> Result<String, String> {
+    fn figure(&self, width: f64) -> Result<String, String> {
         let all = self.files.len() as f64;
         let curves: Vec<Curve> = self
             .solvers
@@ -90,21 +90,18 @@ impl<'a> SolverComparison<'a> {
                 steps: self.ratios(k).iter().enumerate().map(|(i, &ratio)| (ratio, (i + 1) as f64 / all)).collect(),
             })
             .collect();
-        let title = format!("{}D, tolerance {}: {} problems", self.dimension, power(self.tolerance), self.files.len());
-        figure::profile(&title, &curves)
+        let title = format!("{}D, tolerance {:e}: {} problems", self.dimension, self.tolerance, self.files.len());
+        figure::profile(&title, &curves, width)
     }
 
     fn section(&self, page: &mut String) {
-        let _ = writeln!(page, "\n## {}D, tolerance {}\n", self.dimension, power(self.tolerance));
-        let _ = writeln!(
-            page,
-            "| solver | solved | fastest | time / ms, of those it solved | time / ms, of those all solved |"
-        );
+        let _ = writeln!(page, "\n## {}D, tolerance {:e}\n", self.dimension, self.tolerance);
+        let _ = writeln!(page, "| solver | solved | fastest | time of those it solved | time of those all solved |");
         let _ = writeln!(page, "|---|---|---|---|---|");
         // Solvers that solve nothing are excluded, as there would be no common problems.
         let able: Vec<usize> = (0..self.solvers.len()).filter(|&k| self.solved(k) > 0).collect();
         let by_all = |times: &[Option<f64>]| able.iter().all(|&k| times[k].is_some());
-        let shown = |mean: Option<f64>| mean.map_or("–".to_owned(), significant);
+        let shown = |mean: Option<f64>| mean.map_or("–".to_owned(), in_its_unit);
         for (k, solver) in self.solvers.iter().enumerate() {
             let fastest = self.ratios(k).iter().filter(|&&ratio| ratio == 1.0).count();
             let (own, common) = (shown(self.mean(k, |_| true)), shown(self.mean(k, by_all)));
@@ -156,8 +153,8 @@ fn figure_name(dimension: usize, tolerance: f64) -> String {
     format!("profile-{dimension}d-{}.svg", power(tolerance))
 }
 
-/// Writes profile.md and the figures.
-pub(super) fn write(folder: &Path, rows: &[Row], limit: std::time::Duration) -> Result<(), String> {
+/// Writes profile.md and the figures, of a width in mm.
+pub(super) fn write(folder: &Path, rows: &[Row], limit: std::time::Duration, width: f64) -> Result<(), String> {
     let put = |name: &str, text: &str| {
         let path = folder.join(name);
         std::fs::write(&path, text).map_err(|error| format!("error: {}: {error}", path.display()))
@@ -168,7 +165,7 @@ pub(super) fn write(folder: &Path, rows: &[Row], limit: std::time::Duration) -> 
         for tolerance in TOLERANCES {
             let contest = SolverComparison::new(rows, dimension, tolerance);
             contest.section(&mut page);
-            put(&contest.figure_name(), &contest.figure()?)?;
+            put(&contest.figure_name(), &contest.figure(width)?)?;
         }
     }
     put("profile.md", &page)
@@ -235,8 +232,8 @@ mod tests {
         assert!((contest.mean(1, |_| true).unwrap() - 8.0_f64.sqrt()).abs() < 1e-14);
         let mut page = String::new();
         contest.section(&mut page);
-        assert!(page.contains("| x | 1 / 3 | 1 | 1.00 | 1.00 |"), "{page}");
-        assert!(page.contains("| y | 2 / 3 | 1 | 2.83 | 4.00 |"), "{page}");
+        assert!(page.contains("| x | 1 / 3 | 1 | 1 ms | 1 ms |"), "{page}");
+        assert!(page.contains("| y | 2 / 3 | 1 | 2.83 ms | 4 ms |"), "{page}");
         assert!(page.contains("Solved by none: `c`"), "{page}");
     }
 }

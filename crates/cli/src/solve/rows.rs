@@ -112,7 +112,7 @@ impl RowColumns {
     pub(super) fn header(&self) -> String {
         let tolerance = self.tolerance.then_some("tol.");
         let asymmetry = self.asymmetry.then_some("asym.");
-        self.line(["file", "solver", "contacts", "outcome", "residual", "iter.", "time/ms"], tolerance, asymmetry)
+        self.line(["file", "solver", "contacts", "outcome", "residual", "iter.", "time"], tolerance, asymmetry)
     }
 
     pub(super) fn row(&self, row: &Row) -> String {
@@ -121,7 +121,7 @@ impl RowColumns {
         let solver = if m.used == row.solver { row.solver.to_owned() } else { format!("{}: {}", row.solver, m.used) };
         let contacts = format!("{} {}D", row.contacts, row.dimension);
         let (residual, iterations, time) =
-            (format!("{:.1e}", m.residual), m.iterations.to_string(), significant(m.time_ms));
+            (format!("{:.1e}", m.residual), m.iterations.to_string(), in_its_unit(m.time_ms));
         let tolerance = self.tolerance.then(|| format!("{:e}", row.tolerance));
         let asymmetry = self.asymmetry.then(|| match row.asymmetry {
             some if some > ASYMMETRIC => format!("{some:.0e}"),
@@ -157,10 +157,9 @@ impl RowColumns {
     }
 }
 
-/// A number with three significant digits.
-pub(super) fn significant(x: f64) -> String {
-    let decimals = if x > 0.0 && x.is_finite() { (2.0 - x.log10().floor()).clamp(0.0, 7.0) } else { 0.0 };
-    format!("{x:.0$}", decimals as usize)
+/// A time, ms, with three significant digits in the unit that suits it.
+pub(super) fn in_its_unit(ms: f64) -> String {
+    if ms.is_finite() { teeter_scenario::readable::with_digits(1e-3 * ms, "s", 3) } else { "–".to_owned() }
 }
 
 #[cfg(test)]
@@ -192,8 +191,8 @@ mod tests {
     }
 
     #[test]
-    fn times_show_three_digits() {
-        let shown = [1234.5, 12.345, 0.12345, 0.00012345, 0.0, f64::NAN].map(significant);
-        assert_eq!(shown, ["1234", "12.3", "0.123", "0.000123", "0", "NaN"]);
+    fn times_are_in_units_that_suit_them() {
+        let shown = [1234.5, 12.345, 0.12345, 0.00012345, 0.0, f64::NAN].map(in_its_unit);
+        assert_eq!(shown, ["1.23 s", "12.3 ms", "123 µs", "123 ns", "0 s", "–"]);
     }
 }
