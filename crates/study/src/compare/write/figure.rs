@@ -81,7 +81,7 @@ fn figure(comparison: &Comparison, before: Option<&Comparison>, channel: Channel
     let y = Axis::linear(format!("{} ({unit})", channel.title()), values)?;
     let every = measured.len().div_ceil(MOST_MARKS).max(1);
     let name = if found.is_measured { "measured" } else { "measured, as the rate of the samples" };
-    let name = if every > 1 { format!("{name} (one row of {every})") } else { name.to_owned() };
+    let thinned = (every > 1).then(|| format!("marks: one row of {every}"));
     let marks = Series::marks(name, measured.into_iter().step_by(every), Mark::Circle).number(6).hollow().faint();
     let mut series = vec![marks];
     if before.is_some() {
@@ -94,7 +94,7 @@ fn figure(comparison: &Comparison, before: Option<&Comparison>, channel: Channel
     };
     series.push(Series::line(name, simulated).number(1));
     let horizon: Vec<f64> = comparison.settings.horizon.into_iter().collect();
-    let motion = Panel::new(y).with(series).height_mm(HEIGHTS[0]).guides(horizon.clone());
+    let motion = Panel::new(y).with(series).height_mm(HEIGHTS[0]).guides(horizon.clone()).note(thinned);
     let both = off.iter().chain(off_before.iter().flatten()).map(|point| point.1);
     let low = Axis::linear(format!("Difference ({unit})"), both)?;
     let off_before = off_before.map(|off| Series::line("", off).number(DASHED));

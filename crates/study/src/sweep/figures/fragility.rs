@@ -32,6 +32,8 @@ const RESAMPLES: u64 = 1000;
 const SEED: u64 = 20_150_521;
 /// Points of a curve in its table and figure.
 const POINTS: usize = 121;
+/// What is drawn of each study, beside its name.
+const SYMBOLS: &str = "line: lognormal fit; band: 95 % of resampled fits; marks: shares of the cases";
 /// Different intensities up to which shares are those at each; above, those of groups.
 const MOST_STRIPES: usize = 40;
 /// Groups of equally many cases for clouds.
@@ -307,7 +309,8 @@ impl Parts {
             let name = if curve.fit.is_ok() { "" } else { study.name.as_str() };
             series.push(Series::marks(name, points.collect::<Vec<_>>(), Mark::of(number)).number(number));
         }
-        Ok((axis, Panel::new(Axis::between("Probability", -SHARE_ROOM, 1.0 + SHARE_ROOM)).with(series)))
+        let panel = Panel::new(Axis::between("Probability", -SHARE_ROOM, 1.0 + SHARE_ROOM)).with(series);
+        Ok((axis, panel.note(SYMBOLS.to_owned())))
     }
 
     fn fit(&mut self, study: &Ensemble, label: &str, curve: &Curve, start: &str) {
