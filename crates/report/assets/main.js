@@ -17,6 +17,7 @@
         id: panel.id, contact: panel.contact, title: panel.title, unit: panel.unit, series, guides: panel.guides, least: panel.least,
         cut: panel.cut ? cutOf(series, panel.least) : undefined, height: late ? 160 : 170,
       });
+      if (panel.note) htmlElement("p", "note", `${panel.note[0].toUpperCase()}${panel.note.slice(1)}.`, byId(`panel-${panel.id}`));
     }
   }
 
@@ -65,6 +66,13 @@
   const scaled = (values, factor) => values.map((f) => (f === null ? null : f * factor));
   const active = scenery.contacts.map((_, k) => k).filter((k) => forces.points.some((point) => point.contact === k));
   const nameOf = ({ block, surface }) => `${scenery.blocks[block].name} on ${surface}`;
+  /** The contacts that paper has room for: those with the largest forces, in their order. */
+  const strongestContacts = () => {
+    const most = (k) => forces.points.filter(({ contact }) => contact === k)
+      .reduce((size, { normal }) => normal.reduce((largest, x) => Math.max(largest, x ?? 0), size), 0);
+    const kept = [...active].sort((a, b) => most(b) - most(a)).slice(0, 8);
+    return active.filter((k) => kept.includes(k));
+  };
   // So many that one would look for them: one at a time.
   if (active.length > 3) {
     const label = htmlElement("label", "", "Forces of ", byId("plots"));
@@ -93,6 +101,9 @@
       });
       if (means.length) {
         htmlElement("p", "note", `Pale: raw, the mean of each step or of a few. Strong: the mean over ${forces.window}.`, byId(`panel-${key}-${k}`));
+      }
+      if (forces.redundant?.includes(k)) {
+        htmlElement("p", "note", "Equilibrium alone doesn't decide these forces: of rigid bodies that are held more than they need be, they are one of many sets that keep them in balance.", byId(`panel-${key}-${k}`));
       }
     }
     plots.add({
@@ -388,9 +399,39 @@
     requestAnimationFrame(relayout);
   }).observe(document.documentElement);
   // Paper has its own width; drawn for that of the screen, the plots' type would come out too small or too large.
+  /** The picture in which a block is turned furthest from its start, and the last one. */
+  function telling() {
+    const last = times.length - 1;
+    const turned = (k) => frames.blocks.reduce((most, { phi }) => Math.max(most, Math.abs(phi[k] - phi[0])), 0);
+    const furthest = times.reduce((best, _, k) => (turned(k) > turned(best) ? k : best), 0);
+    const swing = turned(furthest) > turned(last) + 1e-3 ? [furthest] : [];
+    return [...swing, last].filter((k) => k !== frame);
+  }
+
+  // Paper can't be asked for another time or contact: it has the telling pictures, and the strongest contacts.
+  let printed = null;
   window.addEventListener("beforeprint", () => {
     document.querySelectorAll("details").forEach((one) => one.setAttribute("open", ""));
+    if (printed) return;
+    setPlaying(false);
+    printed = { frame, pictures: htmlElement("div", "printed", undefined, byId("stage")) };
+    for (const k of telling()) {
+      show(k);
+      const figure = htmlElement("figure", "", undefined, printed.pictures);
+      const picture = scene.root.cloneNode(true);
+      picture.removeAttribute("id");
+      figure.append(picture);
+      htmlElement("figcaption", "", `${byId("time-readout").textContent} ${byId("scene-readout").textContent}`, figure);
+    }
+    show(printed.frame);
+    if (active.length > 3) plots.choose(...strongestContacts());
     plots.drawFor(680);
   });
-  window.addEventListener("afterprint", () => plots.drawFor(null));
+  window.addEventListener("afterprint", () => {
+    if (!printed) return;
+    printed.pictures.remove();
+    printed = null;
+    if (active.length > 3) plots.choose(Number(byId("choice").querySelector("select").value));
+    plots.drawFor(null);
+  });
 })();

@@ -79,9 +79,9 @@ const plots = (() => {
     panel.unitText.textContent = unit ? `(${unit})` : "";
   }
 
-  /** The dashes of a line on others, as in the figures: all have the same period, each half the dashes of the one below. */
-  const over = (lines) => `${10 / 2 ** Math.min(lines, 3)} ${10 - 10 / 2 ** Math.min(lines, 3)}`;
-  const stroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${series.over ? over(series.over) : dash(series.index)}; fill: none`;
+  /** The dashes of a line on others, as in the figures: all have the same period, each half the dashes of the one below; of more than four, equal parts. */
+  const over = (lines, most) => (most <= 3 ? `${10 / 2 ** lines} ${10 - 10 / 2 ** lines}` : `${4 * (most + 1 - lines)} ${4 * lines}`);
+  const stroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${series.over ? over(series.over, series.mostOver) : dash(series.index)}; fill: none`;
 
   /** The largest value of a panel, by which its readouts have their decimals. */
   const largestOf = ({ series, cut }) => Math.min(cut?.limit ?? Infinity, series.reduce((most, { y, upper }) => [y, upper ?? []].reduce((largest, values) =>
@@ -94,6 +94,8 @@ const plots = (() => {
     const near = (a, b) => a.t === b.t && !a.upper && !b.upper && a.raw === b.raw && a.y.length === b.y.length
       && a.y.every((x, i) => Math.abs(x - b.y[i]) <= 0.01 * (high - low));
     series.forEach((line, k) => { line.over = series.slice(0, k).reduce((most, earlier) => (near(line, earlier) ? Math.max(most, earlier.over + 1) : most), 0); });
+    const most = Math.max(0, ...series.map(({ over: lines }) => lines));
+    series.forEach((line) => { line.mostOver = most; });
   }
 
   function add(panel) {
@@ -264,7 +266,7 @@ const plots = (() => {
         const [a, b] = [px(forces.borders[from]), px(forces.borders[i])];
         const name = { k: "stick", l: "slip" }[band.state[from]];
         if (name && b >= margin.left && a <= size.width) {
-          body += `<rect class="${name}" x="${a.toFixed(2)}" y="${y}" width="${(b - a).toFixed(2)}" height="12"/>`;
+          body += `<rect class="${name}" x="${a.toFixed(2)}" y="${y}" width="${Math.max(b - a, 1.2).toFixed(2)}" height="12"/>`;
         }
         from = i;
       }
@@ -403,9 +405,9 @@ const plots = (() => {
     readOut(now);
   }
 
-  /** Shows the panels of one contact, hides those of the others. */
-  function choose(contact) {
-    for (const panel of panels) panel.element.hidden = panel.contact !== undefined && panel.contact !== contact;
+  /** Shows the panels of these contacts, hides those of the others. */
+  function choose(...contacts) {
+    for (const panel of panels) panel.element.hidden = panel.contact !== undefined && !contacts.includes(panel.contact);
   }
 
   return {

@@ -585,7 +585,8 @@ const scene = (() => {
     for (const load of data.loads) {
       const force = load.force.map((f) => f * load.factor[picture]);
       const size = Math.hypot(...force);
-      if (!(size > 0)) continue;
+      const couple = (load.couple ?? 0) * load.factor[picture];
+      if (!(size > 0) && couple === 0) continue;
       const ends = [];
       if (load.block !== undefined) {
         const { x, y } = drawnPose(load.block, at);
@@ -600,6 +601,17 @@ const scene = (() => {
           if (x >= 0 && x <= beam.span) ends.push([beam.x + across + x, beam.y + up + exaggeration * deflection(load.beam, picture, x)]);
         }
       }
+      if (couple !== 0) {
+        // Three quarters of a turn about the point, the way it turns: counter-clockwise if positive.
+        for (const [x, y] of ends) {
+          const [a, b] = [px(x), py(y)];
+          const from = couple > 0 ? a + 13 : a - 13;
+          const d = `M${from.toFixed(2)} ${b.toFixed(2)}A13 13 0 1 ${couple > 0 ? 0 : 1} ${a.toFixed(2)} ${(b + 13).toFixed(2)}`;
+          const arrow = svgElement("path", { d, class: "load couple", "data-load": load.name, "marker-end": "url(#load-head)" }, layers.loads);
+          svgElement("title", {}, arrow).textContent = `${load.name}: ${withPrefix(Math.abs(couple), "N m")}`;
+        }
+      }
+      if (!(size > 0)) continue;
       const length = Math.max(8, (46 * size) / heaviest);
       const [dx, dy] = [force[0] / size, -force[1] / size];
       for (const [x, y] of ends) {
@@ -692,7 +704,8 @@ const scene = (() => {
     }, 0);
     const wanted = 14 / (largest * whole.scale);
     if (!(wanted > 3.5) || !Number.isFinite(wanted)) return 1;
-    return factors.reduce((best, one) => (one <= wanted ? one : best), 1);
+    // What takes more than that to be seen isn't worth a distorted picture: the slider shows it.
+    return factors.reduce((best, one) => (one <= Math.min(wanted, 100) ? one : best), 1);
   }
 
   return {

@@ -24,6 +24,7 @@ mod packed;
 mod panels;
 mod placed;
 mod recorder;
+mod redundant;
 mod rocking;
 mod scenery;
 mod span;

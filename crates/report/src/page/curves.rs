@@ -108,8 +108,25 @@ pub(crate) struct ForceCurve {
     pub(crate) tangential: Vec<f64>,
     /// Tangential displacement while it pressed, from the start to the end of the bucket, m.
     pub(crate) slip: Vec<f64>,
-    /// The state in most of the steps.
+    /// The state in most of the steps; of a bucket in which it begins to press, the one in which it does.
     pub(crate) state: Vec<ContactState>,
+}
+
+impl ForceCurve {
+    /// Takes slip that is nothing but rounding, in all of a stretch in which the contact slips no more than that (m), for sticking.
+    pub(crate) fn stick_within(&mut self, rounding: f64) {
+        let mut from = 0;
+        while from < self.state.len() {
+            let slips = |k: &usize| self.state.get(*k) == Some(&ContactState::Slip);
+            let to = (from..).find(|k| !slips(k)).unwrap_or(from);
+            let before = |k: usize| if k == 0 { 0.0 } else { self.slip[k - 1] };
+            let slipped: f64 = (from..to).map(|k| (self.slip[k] - before(k)).abs()).sum();
+            if !(slipped > rounding) {
+                self.state[from..to].fill(ContactState::Stick);
+            }
+            from = to + 1;
+        }
+    }
 }
 
 impl Curves {
@@ -269,9 +286,14 @@ impl Curves {
         let mean = |k: usize| {
             works().zip(&self.buckets).map(|(work, bucket)| work.impulse[k] / (bucket.last - bucket.begin)).collect()
         };
+        let mut touched = false;
         let state = works().zip(&self.buckets).map(|(work, bucket)| {
-            let open = bucket.steps.saturating_sub(work.sticking + work.slipping);
-            if open >= work.sticking.max(work.slipping).max(1) {
+            let pressing = work.sticking + work.slipping;
+            let open = bucket.steps.saturating_sub(pressing);
+            // A touch shorter than a bucket is seen all the same: by that in which it begins.
+            let begins = !touched && pressing > 0;
+            touched = pressing > 0;
+            if open >= work.sticking.max(work.slipping).max(1) && !begins {
                 ContactState::Open
             } else if work.sticking >= work.slipping {
                 ContactState::Stick
@@ -343,6 +365,38 @@ mod tests {
             [fold(f64::min), fold(f64::max)]
         };
         assert_eq!(extremes(&fewer), extremes(&curves));
+    }
+
+    #[test]
+    fn a_touch_shorter_than_a_bucket_is_seen_where_it_begins() {
+        let mut curves = Curves::new(4, 0.0, vec![], 1);
+        for k in 1..=64 {
+            curves.enter(f64::from(k), &[]);
+            if k == 37 {
+                curves.add(0, [1.0, 0.0], ContactState::Stick, 0.0);
+            }
+        }
+        let state = curves.forces(0).unwrap().state;
+        assert_eq!(state, [ContactState::Open, ContactState::Open, ContactState::Stick, ContactState::Open]);
+    }
+
+    #[test]
+    fn slip_of_rounding_is_sticking_and_a_short_slide_is_not() {
+        use ContactState::{Open, Slip, Stick};
+        let of = |slip: [f64; 6]| {
+            let mut forces = ForceCurve {
+                normal: vec![1.0; 6],
+                tangential: vec![0.0; 6],
+                slip: slip.to_vec(),
+                state: vec![Slip, Slip, Open, Stick, Slip, Slip],
+            };
+            forces.stick_within(1e-9);
+            forces.state
+        };
+        assert_eq!(of([1e-10, 2e-10, 2e-10, 2e-10, 3e-10, 4e-10]), [Stick, Stick, Open, Stick, Stick, Stick]);
+        assert_eq!(of([0.0, 0.0, 0.0, 0.0, 1e-3, 2e-3]), [Stick, Stick, Open, Stick, Slip, Slip]);
+        // To and fro it comes back to where it was, but has slipped.
+        assert_eq!(of([1e-3, 0.0, 0.0, 0.0, 0.0, 0.0]), [Slip, Slip, Open, Stick, Stick, Stick]);
     }
 
     #[test]

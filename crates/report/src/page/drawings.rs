@@ -1,8 +1,10 @@
 //! The scene at its end as drawings to scale: the network of contact forces, and lines of thrust.
 
 use super::chain::{LastPicture, Thrust, ThrustLine, thrust_lines};
+use super::content;
 use super::placed;
 use super::recorder::PageRecorder;
+use super::redundant;
 use crate::with_digits;
 use teeter_plot::{Axis, Colour, Drawing, Figure, Panel, Series};
 use teeter_scenario::scene::SupportingBody;
@@ -74,8 +76,8 @@ pub(super) fn force_chains(recorder: &PageRecorder) -> Option<Drawing> {
     )
 }
 
-/// The lines of thrust at the end.
-pub(super) fn thrust(recorder: &PageRecorder, lines: &[ThrustLine]) -> Option<Drawing> {
+/// The lines of thrust at the end; `many`: whether the contact forces are one of many sets then.
+pub(super) fn thrust(recorder: &PageRecorder, lines: &[ThrustLine], many: bool) -> Option<Drawing> {
     let last = LastPicture::of(recorder).filter(|_| !lines.is_empty())?;
     let mut drawing = scene(recorder, &last, "Line of thrust at the end of the run");
     for line in lines {
@@ -91,12 +93,24 @@ pub(super) fn thrust(recorder: &PageRecorder, lines: &[ThrustLine]) -> Option<Dr
         lines.iter().flat_map(|line| &line.joints).filter_map(part).max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
     drawing = drawing.key(Colour::Series(1), 0.45, "line of thrust, through the centre of pressure of each joint");
     if let Some((most, [one, other])) = most {
-        drawing = drawing.note(format!(
-            "Largest eccentricity {} of the depth, between {one} and {other}",
-            format!("{most:.3}").replace('-', "\u{2212}")
-        ));
+        drawing = drawing
+            .note(format!("Largest eccentricity {} of the depth, between {one} and {other}", three_digits(most)));
+    }
+    if many {
+        drawing = drawing.note(format!("The line is that of {}", redundant::NOTE));
     }
     Some(drawing.note(time_note(last.interval)))
+}
+
+/// An eccentricity, m, of a joint of this depth, m: none where it is nothing but rounding.
+pub(super) fn above_rounding(eccentricity: f64, depth: f64) -> f64 {
+    if content::holds(eccentricity.abs(), depth) { eccentricity } else { 0.0 }
+}
+
+/// A part with three decimals, of which none is a zero below zero.
+fn three_digits(part: f64) -> String {
+    let part = if part.abs() < 5e-4 { 0.0 } else { part };
+    format!("{part:.3}").replace('-', "\u{2212}")
 }
 
 /// The eccentricities of the joints, in parts of their depth.
@@ -110,7 +124,9 @@ pub(super) fn eccentricities(lines: &[ThrustLine]) -> Option<Figure> {
             String::new()
         };
         let points = line.joints.iter().enumerate();
-        let value = |joint: &super::Joint| joint.eccentricity.zip(joint.depth).map_or(f64::NAN, |(e, depth)| e / depth);
+        let value = |joint: &super::Joint| {
+            joint.eccentricity.zip(joint.depth).map_or(f64::NAN, |(e, depth)| above_rounding(e, depth) / depth)
+        };
         Series::line(label, points.map(|(number, joint)| ((number + 1) as f64, value(joint)))).number(k)
     });
     let series: Vec<Series> = series.collect();

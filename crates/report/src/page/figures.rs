@@ -7,7 +7,7 @@ use super::crowd::CrowdCurve;
 use super::drawings;
 use super::panels::{Panels, Place, Portrait, PortraitLine, TimePanel, cut_at, prefix, time_unit};
 use super::recorder::{MANY_IMPACTS, PageRecorder};
-use super::{means, span};
+use super::{means, redundant, span};
 use crate::{shortest, with_digits};
 use teeter_integrator::ContactState;
 use teeter_plot::{Axis, Band, Colour, Figure, Legend, Panel, Series};
@@ -77,7 +77,7 @@ pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
     if let Some(drawing) = drawings::force_chains(recorder) {
         figures.push(("force_chains.svg".to_owned(), drawing.width_mm(width).to_svg()));
     }
-    if let Some(drawing) = drawings::thrust(recorder, &lines) {
+    if let Some(drawing) = drawings::thrust(recorder, &lines, panels.many_at_end()) {
         figures.push(("thrust_line.svg".to_owned(), drawing.width_mm(width).to_svg()));
     }
     figures
@@ -131,7 +131,8 @@ impl Plots<'_> {
         let y = cut_axis(&label, range, &lines, panel.least);
         let contact = panel.of_contact.as_ref();
         let name = contact.map(|(_, name)| name.clone()).filter(|name| !name.is_empty());
-        let drawn = Panel::new(y.clone()).with(lines).telling_apart().note(note.or(name));
+        let note = note.or(name).or(panel.note.map(str::to_owned));
+        let drawn = Panel::new(y.clone()).with(lines).telling_apart().note(note);
         self.marked(guided(drawn.levels(panel.guides.clone()), &panel.guides, &y), contact.map(|(pair, _)| *pair))
     }
 
@@ -246,7 +247,8 @@ impl Plots<'_> {
                     Series::staircase(label, borders.iter().copied().zip(y.iter().map(|y| factor * y)), end)
                         .number(point)
                 };
-                let mean = means::normal(&self.panels.curves, forces, window);
+                // Springs make a force smooth: what it shows is no ringing of the steps.
+                let mean = means::normal(&self.panels.curves, forces, window).filter(|_| !contact.has_duration);
                 // The raw values stay behind their mean, which then has the name.
                 normal.push(if mean.is_some() {
                     step(&forces.normal, factor, "").faint()
@@ -278,7 +280,8 @@ impl Plots<'_> {
                     .then(|| format!("{} on {}", scenery.blocks[contact.block].name, contact.surface));
                 let meant = (what == "Normal" && means.iter().any(Option::is_some))
                     .then(|| format!("pale: raw; mean over {}", with_digits(window, "s", 3)));
-                let note = [name, meant, cut].into_iter().flatten().collect::<Vec<_>>().join("; ");
+                let many = (what == "Normal" && self.panels.redundant[pair][0]).then(|| redundant::NOTE.to_owned());
+                let note = [name, meant, cut, many].into_iter().flatten().collect::<Vec<_>>().join("; ");
                 let y = cut_axis(&format!("{what} force ({unit})"), range, &lines, least);
                 let note = Some(note).filter(|note| !note.is_empty());
                 if what == "Normal" {

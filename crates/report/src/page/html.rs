@@ -66,7 +66,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("shapes", beams::shapes(recorder)),
         ("records", accelerograms::section(&recorder.scenery.records, &summary.records, true)),
         ("borne", beams::borne(recorder, summary)),
-        ("thrust", thrust::section(recorder)),
+        ("thrust", thrust::section(recorder, panels.many_at_end())),
         ("rocking", rocking::rocking(&half_cycles(recorder, summary), recorder, summary.dt)),
         ("model", model::model(summary)),
         ("numbers", tiles::numbers(&values, summary)),

@@ -4,6 +4,7 @@
 use super::content::{LeftOut, largest};
 use super::curves::{Curves, ForceCurve};
 use super::recorder::{NUMBERS, PageRecorder};
+use super::redundant::redundant;
 use super::scenery::ContactDrawn;
 use teeter_scenario::scene::LengthUnit;
 
@@ -24,6 +25,8 @@ pub(crate) enum Place {
 pub(crate) struct TimePanel {
     /// What its file and its place on the page are called.
     pub(crate) id: String,
+    /// What is to be known to read it.
+    pub(crate) note: Option<&'static str>,
     /// What is plotted.
     pub(crate) title: String,
     /// The contact whose it is, and its name where there are several.
@@ -121,6 +124,8 @@ pub(crate) struct Panels {
     pub(crate) force_units: Vec<[(&'static str, f64); 2]>,
     /// Whether tangential forces are more than rounding, by contacts.
     pub(crate) tangential: Vec<bool>,
+    /// Whether the forces are [one of many sets](redundant), by contacts: over a part of the run, and at its end.
+    pub(crate) redundant: Vec<[bool; 2]>,
 }
 
 /// Numbers of a length as large as this are in a larger unit than the scene's.
@@ -196,6 +201,7 @@ impl Panels {
             let forces = forces(&curves);
             let mut panels = Self {
                 tangential: vec![true; recorder.scenery.contacts.len()],
+                redundant: redundant(recorder, &forces),
                 force_units: force_units(recorder, &forces),
                 curves,
                 forces,
@@ -226,6 +232,11 @@ impl Panels {
         if !recorder.scenery.is_crowded() {
             self.portraits(recorder);
         }
+    }
+
+    /// Whether forces of contacts are one of many sets at the end of the run.
+    pub(crate) fn many_at_end(&self) -> bool {
+        self.redundant.iter().any(|[_, at_end]| *at_end)
     }
 
     /// How many numbers the curves take on the page.

@@ -78,6 +78,9 @@ pub(crate) struct ContactDrawn {
     pub(crate) lower: bool,
     /// Where it can touch.
     pub(crate) points: Vec<PointDrawn>,
+    /// Whether its law has springs, whose forces follow from the motion.
+    #[serde(skip)]
+    pub(crate) has_duration: bool,
     /// The number of its first point among those of all contacts.
     #[serde(skip)]
     pub(crate) first: usize,
@@ -271,6 +274,11 @@ impl Scenery {
                 linear: contact.kinematics == teeter_detect::Kinematics::Linear,
                 lower: contact.face == BeamFace::Lower,
                 points: drawn.collect(),
+                has_duration: matches!(
+                    contact.law.impact,
+                    teeter_integrator::ImpactLaw::KelvinVoigt { .. }
+                        | teeter_integrator::ImpactLaw::HuntCrossley { .. }
+                ),
                 first,
             }
         });

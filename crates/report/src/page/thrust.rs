@@ -1,15 +1,15 @@
 //! The lines of thrust on the page: the drawing, and the joints as a table.
 
-use super::drawings;
 use super::recorder::PageRecorder;
 use super::{Joint, rounded};
+use super::{content, drawings};
 use std::fmt::Write;
 use teeter_plot::{Theme, escaped};
 
-/// The section; empty without a chain of blocks.
-pub(super) fn section(recorder: &PageRecorder) -> String {
+/// The section; `many`: whether the contact forces are one of many sets at the end. Empty without a chain of blocks.
+pub(super) fn section(recorder: &PageRecorder, many: bool) -> String {
     let lines = drawings::lines_of(recorder);
-    let Some(drawing) = drawings::thrust(recorder, &lines) else { return String::new() };
+    let Some(drawing) = drawings::thrust(recorder, &lines, many) else { return String::new() };
     let joints: usize = lines.iter().map(|line| line.joints.len()).sum();
     let mut html = format!(
         "<section id=\"thrust\" class=\"panel\" aria-labelledby=\"thrust-title\">\n<h3 id=\"thrust-title\">Line of \
@@ -23,8 +23,12 @@ pub(super) fn section(recorder: &PageRecorder) -> String {
     for joint in lines.iter().flat_map(|line| &line.joints) {
         let Joint { between: [one, other], .. } = joint;
         let [normal, shear] = joint.normal_and_shear.map_or([None; 2], |forces| forces.map(Some));
-        let part = joint.eccentricity.zip(joint.depth).map(|(e, depth)| e / depth);
-        let cells = [joint.eccentricity.map(|e| 1e3 * e), part, normal, shear].map(cell);
+        let depth = joint.depth.unwrap_or(f64::INFINITY);
+        let e = joint.eccentricity.map(|e| drawings::above_rounding(e, joint.depth.unwrap_or(0.0)));
+        let shear = shear
+            .zip(normal)
+            .map(|(shear, normal)| if content::holds(shear.abs(), normal.abs()) { shear } else { 0.0 });
+        let cells = [e.map(|e| 1e3 * e), e.map(|e| e / depth), normal, shear].map(cell);
         let _ =
             writeln!(html, "<tr><th scope=\"row\">{} – {}</th>{}</tr>", escaped(one), escaped(other), cells.concat());
     }

@@ -55,6 +55,46 @@ fn a_block_at_rest_on_an_incline_has_no_plot_of_rounding() {
 }
 
 #[test]
+fn forces_that_equilibrium_leaves_open_are_told_as_one_of_many_sets() {
+    // 16 joints of 15 voussoirs: 48 unknowns, 45 equations.
+    let arch = run("arch-of-many", &scenario_text("masonry-arch").replace("end  = \"1 s\"", "end  = \"20 ms\""));
+    let page = data(&arch.html);
+    assert_eq!(page["forces"]["redundant"].as_array().unwrap().len(), 16);
+    let svg = |name: &str| figures(&arch.page).into_iter().find(|(file, _)| file == name).unwrap().1;
+    assert!(svg("thrust_line.svg").contains("many equilibria of rigid bodies"));
+    assert!(svg("contact_forces-v1-on-ground.svg").contains("many equilibria of rigid bodies"));
+    assert!(arch.html.contains("many equilibria of rigid bodies"));
+    // A stack has as many equations as unknowns: three of each a block.
+    let stack = run("stack-of-one", &scenario_text("stack-of-blocks"));
+    assert!(data(&stack.html)["forces"]["redundant"].is_null());
+    assert!(!figures(&stack.page).iter().any(|(_, svg)| svg.contains("many equilibria")));
+}
+
+#[test]
+fn friction_that_rises_in_impacts_says_that_it_shares_their_work() {
+    let tilted = "title = 't'\n[time]\nend = '0.6 s'\nstep = '100 us'\n[ground]\n[material.a]\ndensity = '2000 kg/m^3'\n[block.b]\n\
+        material = 'a'\nwidth = '10 cm'\nheight = '20 cm'\ndepth = '10 cm'\nposition = ['0 m', '60 cm']\nangle = '25 deg'\n\
+        spin = '6 rad/s'\n[contact.f]\nbetween = ['b', 'ground']\nfriction = 0.6\nrestitution = 0.5\n";
+    let run = run("drop-tilted-note", tilted);
+    let page = data(&run.html);
+    let works = panel(&page, "works").unwrap();
+    let friction = works["series"].as_array().unwrap().iter().find(|line| line["label"] == "friction").unwrap();
+    let y = numbers(&friction["y"]);
+    let mut least = f64::INFINITY;
+    let rise = y
+        .iter()
+        .map(|x| {
+            least = least.min(*x);
+            x - least
+        })
+        .fold(0.0, f64::max);
+    let largest = y.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    assert_eq!(works["note"].is_string(), rise > 0.01 * largest, "{rise} of {largest}");
+    let slides = scenario("sliding");
+    assert!(panel(&data(&slides.html), "works").unwrap()["note"].is_null(), "friction alone only takes");
+}
+
+#[test]
 fn slip_is_the_way_that_a_block_slides() {
     let run = scenario("sliding");
     let trajectory = table(&run.folder.join("trajectory.csv"));

@@ -14,6 +14,8 @@ use teeter_integrator::ContactState;
 pub(super) struct PanelData {
     id: String,
     title: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    note: Option<&'static str>,
     unit: String,
     least: f64,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -138,6 +140,9 @@ pub(super) struct ForceData {
     bucket: String,
     /// Contacts whose tangential forces are rounding.
     frictionless: Vec<usize>,
+    /// Contacts whose forces are one of many sets.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    redundant: Vec<usize>,
     points: Vec<PointForces>,
 }
 
@@ -162,6 +167,7 @@ pub(super) fn time_panels(recorder: &PageRecorder, panels: &Panels) -> Vec<Panel
             _ => panel.title.clone(),
         },
         contact: panel.of_contact.as_ref().map(|(pair, _)| *pair),
+        note: panel.note,
         unit: panel.unit.clone(),
         least: digits(panel.least),
         guides: panel.guides.iter().copied().map(digits).collect(),
@@ -211,7 +217,9 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
             contact,
             point,
             normal: Column::of(&forces.normal, SEEN_BELOW_PEAKS),
-            mean: means::normal(&panels.curves, forces, window).map(|means| Column::of(&means, SEEN)),
+            mean: means::normal(&panels.curves, forces, window)
+                .filter(|_| !drawn.has_duration)
+                .map(|means| Column::of(&means, SEEN)),
             tangential: Column::of(&forces.tangential, SEEN_BELOW_PEAKS),
             state: state.collect(),
         })
@@ -222,6 +230,7 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         window: with_digits(window, "s", 3),
         bucket: with_digits(panels.curves.longest_bucket(), "s", 2),
         frictionless: (0..panels.tangential.len()).filter(|pair| !panels.tangential[*pair]).collect(),
+        redundant: (0..panels.redundant.len()).filter(|pair| panels.redundant[*pair][0]).collect(),
         points: points.collect(),
     }
 }

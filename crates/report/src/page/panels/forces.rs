@@ -6,6 +6,15 @@ use crate::page::content::{ROUNDING, holds, largest};
 use crate::page::recorder::{ENERGIES, PageRecorder};
 use crate::sections::Kind;
 
+/// Scale of slip, in sizes of a block: the rounding of each step adds up over a run, and that of what sticks under impacts all the more.
+const SLIP_SCALE: f64 = 100.0;
+
+/// What is said of it then.
+const SHARED: &str = "in impacts, only contact + friction is dissipated: either may rise";
+
+/// Friction that rises by this part of the largest work is told: in impacts it shares the work with the contact.
+const RISES: f64 = 1e-3;
+
 impl Panels {
     /// Slip of the contacts; and whether their forces are worth a plot. Those that aren't are dropped.
     pub(super) fn contacts(&mut self, recorder: &PageRecorder) {
@@ -14,6 +23,11 @@ impl Panels {
         let several = scenery.contacts.len() > 1;
         let mut panels = Vec::new();
         let mut left_out = Vec::new();
+        for contact in &scenery.contacts {
+            let rounding = ROUNDING * SLIP_SCALE * scenery.blocks[contact.block].reach;
+            let own = &mut self.forces[contact.first..contact.first + contact.points.len()];
+            own.iter_mut().flatten().for_each(|forces| forces.stick_within(rounding));
+        }
         for (pair, contact) in scenery.contacts.iter().enumerate() {
             let points = contact.points.iter().enumerate();
             let points: Vec<_> =
@@ -35,7 +49,8 @@ impl Panels {
                 left_out.push(("tangential force of", of(), force, "N"));
             }
             let reach = scenery.blocks[contact.block].reach;
-            let slipping: Vec<_> = points.iter().filter(|(_, _, forces)| holds(largest(&forces.slip), reach)).collect();
+            let scale = SLIP_SCALE * reach;
+            let slipping: Vec<_> = points.iter().filter(|(_, _, forces)| holds(largest(&forces.slip), scale)).collect();
             if slipping.is_empty() {
                 let most = largest(points.iter().flat_map(|(_, _, forces)| &forces.slip));
                 left_out.push(("slip of", of(), most, "m"));
@@ -51,11 +66,12 @@ impl Panels {
             });
             panels.push(TimePanel {
                 id: format!("slip-{pair}"),
+                note: None,
                 title: "Slip".to_owned(),
                 of_contact: Some((pair, if several { name } else { String::new() })),
                 description: "Slip of the contacts over time".to_owned(),
                 unit: unit.to_owned(),
-                least: 10.0 * ROUNDING * reach * factor,
+                least: ROUNDING * scale * factor,
                 guides: Vec::new(),
                 cut: false,
                 place: Place::Forces,
@@ -111,6 +127,7 @@ impl Panels {
                 serde_json::to_value(kind).ok().and_then(|word| word.as_str().map(str::to_owned)).unwrap_or_default();
             self.panels.push(TimePanel {
                 id: format!("section-{id}"),
+                note: None,
                 of_contact: None,
                 title: title.to_owned(),
                 description: format!("{title} over time"),
@@ -154,9 +171,19 @@ impl Panels {
             let most = largest(drawn.iter().flat_map(|(.., values)| values));
             let (prefix, factor) = prefix(most);
             let line = |(column, label, number, _)| Line::of(&self.curves, column, factor, label, number);
+            let rises = |values: &[f64]| {
+                let mut least = f64::INFINITY;
+                let rise = |x: &f64| {
+                    least = least.min(*x);
+                    x - least
+                };
+                values.iter().map(rise).fold(0.0, f64::max)
+            };
+            let shared = drawn.iter().any(|(_, label, _, values)| label == "friction" && rises(values) > RISES * most);
             let lines = drawn.into_iter().map(line).collect();
             self.panels.push(TimePanel {
                 id: id.to_owned(),
+                note: shared.then_some(SHARED),
                 of_contact: None,
                 title: title.to_owned(),
                 description: format!("{title} of the scene over time"),

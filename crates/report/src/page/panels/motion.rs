@@ -104,6 +104,7 @@ impl Panels {
             let guides = if c == PHI { critical_angles(recorder, &moving, factor) } else { Vec::new() };
             let panel = |id: &str, title: &str, unit: String, lines, guides, least| TimePanel {
                 id: id.to_owned(),
+                note: None,
                 of_contact: None,
                 title: title.to_owned(),
                 description: format!("{title} of the blocks over time"),
@@ -168,6 +169,7 @@ impl Panels {
         let lines = lines.collect();
         self.panels.push(TimePanel {
             id: "w_mid".to_owned(),
+            note: None,
             of_contact: None,
             title: if only_middle { "Deflection at midspan w" } else { "Deflection w" }.to_owned(),
             description: "Deflection of the beams over time".to_owned(),
@@ -221,6 +223,7 @@ impl Panels {
                 self.panels.push(TimePanel {
                     id: if turns { format!("{id}_phi") } else { id.to_owned() },
                     description: format!("{title} over time"),
+                    note: None,
                     of_contact: None,
                     title,
                     unit: format!("{unit}{}", ["", "/s", "/s²"][k]),

@@ -1,0 +1,69 @@
+//! Contacts whose forces equilibrium alone doesn't decide: rigid bodies then bear one of many sets of forces, the one that the solver comes to.
+//!
+//! Of bodies that touch each other directly or by others, each has three equations. Two points or more of a pair leave three unknowns, one leaves two;
+//! more unknowns than equations, and only the sum over some of the contacts follows from them. Of more than two points of one pair, only their resultant
+//! does. Contacts with duration have springs, whose forces follow from the motion: they leave no such choice.
+
+use super::curves::ForceCurve;
+use super::recorder::PageRecorder;
+use super::scenery::ContactDrawn;
+use teeter_integrator::ContactState;
+
+/// Times at which the contacts are looked at.
+const LOOKS: usize = 50;
+
+/// Contacts are told if they are so in this part of these times, or at the end: not for a touch in passing.
+const LEAST: f64 = 0.1;
+
+/// By contacts: whether their forces are one of many sets, over a part of the run and at its end.
+pub(super) fn redundant(recorder: &PageRecorder, forces: &[Option<ForceCurve>]) -> Vec<[bool; 2]> {
+    let contacts = &recorder.scenery.contacts;
+    let buckets = forces.iter().flatten().map(|forces| forces.state.len()).max().unwrap_or(0);
+    let Some(last) = buckets.checked_sub(1) else { return vec![[false; 2]; contacts.len()] };
+    let pressing = |contact: &ContactDrawn, bucket: usize| {
+        let own = forces[contact.first..contact.first + contact.points.len()].iter().flatten();
+        own.filter(|forces| forces.state.get(bucket).is_some_and(|state| *state != ContactState::Open)).count()
+    };
+    let looks: Vec<Vec<bool>> = (1..=LOOKS.min(buckets))
+        .map(|look| look * last / LOOKS.min(buckets))
+        .map(|bucket| at(recorder, &contacts.iter().map(|contact| pressing(contact, bucket)).collect::<Vec<_>>()))
+        .collect();
+    let at_end = |contact: usize| looks.last().is_some_and(|look| look[contact]);
+    let often = |contact: usize| {
+        let count = looks.iter().filter(|look| look[contact]).count();
+        count as f64 >= LEAST * looks.len() as f64 && count > 0
+    };
+    (0..contacts.len()).map(|contact| [often(contact) || at_end(contact), at_end(contact)]).collect()
+}
+
+/// The same at one time, with how many points of each contact press.
+fn at(recorder: &PageRecorder, pressing: &[usize]) -> Vec<bool> {
+    let (blocks, contacts) = (&recorder.scenery.blocks, &recorder.scenery.contacts);
+    // The bodies of each group of touching ones have one number.
+    let mut group: Vec<usize> = (0..blocks.len()).collect();
+    let free = |block: usize| Some(block).filter(|block| !blocks[*block].driven);
+    let rigid = |contact: &ContactDrawn| [free(contact.block), contact.other.and_then(free)];
+    let touching = || contacts.iter().zip(pressing).filter(|(contact, points)| **points > 0 && !contact.has_duration);
+    for (contact, _) in touching() {
+        if let [Some(a), Some(b)] = rigid(contact) {
+            let (from, to) = (group[a].max(group[b]), group[a].min(group[b]));
+            group.iter_mut().filter(|number| **number == from).for_each(|number| *number = to);
+        }
+    }
+    let mut surplus: Vec<isize> = vec![0; blocks.len()];
+    (0..blocks.len()).filter_map(free).for_each(|block| surplus[group[block]] -= 3);
+    let of = |contact: &ContactDrawn| rigid(contact).into_iter().flatten().next().map(|block| group[block]);
+    for (contact, points) in touching() {
+        if let Some(group) = of(contact) {
+            surplus[group] += if *points > 1 { 3 } else { 2 };
+        }
+    }
+    let one = |(contact, points): (&ContactDrawn, &usize)| {
+        let pressed = *points > 0 && !contact.has_duration;
+        pressed && of(contact).is_some_and(|group| *points > 2 || surplus[group] > 0)
+    };
+    contacts.iter().zip(pressing).map(one).collect()
+}
+
+/// What is said of them.
+pub(super) const NOTE: &str = "one of many equilibria of rigid bodies";
