@@ -695,7 +695,7 @@ fn what_rides_down_a_slope_has_not_fallen() {
 
 #[test]
 fn what_stands_on_shaken_ground_did_not_stand_still() {
-    let ground = "[ground]\nmotion = { acceleration = ['0.5 m/s^2', '0 m/s^2'], signal = 's' }\n[signal.s]\nshape = 'sine'\nfrequency = '2 Hz'\n";
+    let ground = "[ground]\nmotion = { acceleration = ['0.5 m/s^2', '0 m/s^2'], signal = 's' }\n[signal.s]\nshape = 'harmonic'\nfrequency = '2 Hz'\n";
     let wide = ROCKER.replace("width = '3 cm'", "width = '20 cm'");
     let ran = scene("moves-along", &format!("{TIME}{ground}{wide}{FLOOR}"));
     assert_eq!(ran.summary["headline"], "`b` stood on the moving ground throughout");

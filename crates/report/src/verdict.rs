@@ -378,7 +378,7 @@ impl Fates {
     /// Takes a step in.
     pub(crate) fn observe(&mut self, watch: &Watch, layout: &Layout, step: &StepReport<'_, 2>, state: &State) {
         self.look(watch, layout, step.t_start, state);
-        self.touch(step, state.t);
+        self.touch(watch, step, state.t);
         if self.stopped.is_none() {
             self.stopped = self.stop(watch, state.t).map(|reason| (state.t, reason));
         }

@@ -93,8 +93,10 @@ pub(super) fn thrust(recorder: &PageRecorder, lines: &[ThrustLine], many: bool) 
         lines.iter().flat_map(|line| &line.joints).filter_map(part).max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
     drawing = drawing.key(Colour::Series(1), 0.45, "line of thrust, through the centre of pressure of each joint");
     if let Some((most, [one, other])) = most {
-        drawing = drawing
-            .note(format!("Largest eccentricity {} of the depth, between {one} and {other}", three_digits(most)));
+        drawing = drawing.note(format!(
+            "Largest eccentricity {} of the joint's depth, between {one} and {other}",
+            three_digits(most)
+        ));
     }
     if many {
         drawing = drawing.note(format!("The line is that of {}", redundant::NOTE));
@@ -136,7 +138,7 @@ pub(super) fn eccentricities(lines: &[ThrustLine]) -> Option<Figure> {
         [line(label, at), line("", -at)]
     });
     let x = Axis::between("Joint, from the first support on", 1.0, (most as f64).max(2.0));
-    let y = Axis::between("Eccentricity e / depth", -0.55, 0.55);
+    let y = Axis::between("Eccentricity e / depth of the joint", -0.55, 0.55);
     let panel = Panel::new(y).with(limits.collect::<Vec<_>>()).with(series);
     Some(Figure::new("eccentricity", "Eccentricity of the line of thrust in each joint", x).panel(panel))
 }

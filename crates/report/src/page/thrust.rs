@@ -34,7 +34,7 @@ pub(super) fn section(recorder: &PageRecorder, many: bool) -> String {
     }
     html.push_str(
         "</tbody></table></div></details>\n<p class=\"note\">e: distance of the centre of pressure from the middle of the joint, \
-         positive to the left as one goes along the chain, in an arch from the left towards the extrados. ± 1/2 of the depth \
+         positive to the left as one goes along the chain, in an arch from the left towards the extrados. The depth of a joint is the length over which its two blocks lie against each other. ± 1/2 of it \
          are its edges, beyond ± 1/6 a joint of elastic stone would open.</p>\n</section>",
     );
     html

@@ -1,7 +1,7 @@
 //! How a block moves that does so at the end of a run and has no other fate: it bounces, rolls, slides or falls (`docs/verdict.md`).
 
 use super::standing::SETTLED;
-use super::{Fates, Seen, Watched};
+use super::{Fates, Seen, Watch, Watched};
 use serde::{Deserialize, Serialize};
 use teeter_integrator::{State, StepReport};
 use teeter_scenario::simulation::Layout;
@@ -42,25 +42,33 @@ impl Going {
 pub(super) struct Touched {
     /// The end of the last step in which a contact pressed on it, s.
     last: Option<f64>,
-    /// The end of the last step in which none did, s.
-    free: Option<f64>,
-    /// Whether it came down on something after such a step.
-    landed: bool,
+    /// Whether none did in a step before.
+    was_free: bool,
+    /// When it last came down after a flight, not a moment without a contact, s.
+    landed: Option<f64>,
 }
+
+/// What touches nothing for less than this part of √(R/g) doesn't fly, but chatters: a bounce as long rises by little more than a thousandth of R.
+const FLIGHT: f64 = 0.1;
 
 impl Fates {
     /// Takes the contacts of a step in that ended at `t` (s).
-    pub(super) fn touch(&mut self, step: &StepReport<'_, 2>, t: f64) {
+    pub(super) fn touch(&mut self, watch: &Watch, step: &StepReport<'_, 2>, t: f64) {
         let pressing = step.active().flat_map(|part| part.contacts).filter(|contact| contact.p[0] > 0.0);
         for body in pressing.flat_map(|contact| [0, 1].map(|side| contact.sides[side].body.0 as usize)) {
-            let Some(Seen { touched, .. }) = self.blocks.get_mut(body) else { continue };
-            touched.landed |= touched.free.is_some() && touched.last.is_none_or(|last| Some(last) < touched.free);
+            let (Some(Seen { touched, .. }), Some(watched)) = (self.blocks.get_mut(body), watch.blocks.get(body))
+            else {
+                continue;
+            };
+            let flight = FLIGHT * watched.still_time;
+            let flew = touched.last.map_or(touched.was_free, |last| step.t_start - last >= flight);
+            if flew && touched.last != Some(t) {
+                touched.landed = Some(t);
+            }
             touched.last = Some(t);
         }
         for Seen { touched, .. } in &mut self.blocks {
-            if touched.last != Some(t) {
-                touched.free = Some(t);
-            }
+            touched.was_free |= touched.last != Some(t);
         }
     }
 }
@@ -69,20 +77,19 @@ impl Seen {
     /// How it moves; `None` of one that does so in no way that has a word, such as one that shakes where it stands.
     pub(super) fn going(&self, watched: &Watched, layout: &Layout, number: usize, state: &State) -> Option<Going> {
         let [vx, vy, spin] = watched.velocity(layout, number, state);
-        let (t, Touched { last, free, landed }) = (state.t, self.touched);
-        if last != Some(t) {
+        let (t, Touched { last, landed, .. }) = (state.t, self.touched);
+        if last.is_none_or(|last| t - last >= FLIGHT * watched.still_time) {
             // In free flight it is where it last touched something again when its speed has turned round.
             let is_above = |last: f64| vy > -0.5 * watched.gravity * (t - last);
             return Some(match last {
                 _ if watched.gravity == 0.0 => Going::Flies,
                 None if vy > 0.0 => Going::Flies,
-                Some(last) if landed && is_above(last) => Going::Bounces,
+                Some(last) if landed.is_some() && is_above(last) => Going::Bounces,
                 Some(last) if is_above(last) => Going::Flies,
                 _ => Going::Falls,
             });
         }
-        let was_free = free.is_some_and(|free| t - free <= SETTLED * watched.still_time);
-        if landed && was_free {
+        if landed.is_some_and(|landed| t - landed <= SETTLED * watched.still_time) {
             return Some(Going::Bounces);
         }
         if !watched.is_round {

@@ -56,8 +56,9 @@ fn a_block_at_rest_on_an_incline_has_no_plot_of_rounding() {
 
 #[test]
 fn forces_that_equilibrium_leaves_open_are_told_as_one_of_many_sets() {
-    // 16 joints of 15 voussoirs: 48 unknowns, 45 equations.
-    let arch = run("arch-of-many", &scenario_text("masonry-arch").replace("end  = \"1 s\"", "end  = \"20 ms\""));
+    // 16 joints of 15 voussoirs: 48 unknowns, 45 equations. Near the load that brings it down joints open, and it is determinate.
+    let text = scenario_text("masonry-arch").replace("end  = \"1 s\"", "end  = \"20 ms\"").replace("-900 N", "-1 N");
+    let arch = run("arch-of-many", &text);
     let page = data(&arch.html);
     assert_eq!(page["forces"]["redundant"].as_array().unwrap().len(), 16);
     let svg = |name: &str| figures(&arch.page).into_iter().find(|(file, _)| file == name).unwrap().1;
