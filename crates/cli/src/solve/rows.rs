@@ -120,8 +120,9 @@ impl RowColumns {
         // A chain of solvers, with the one that it took.
         let solver = if m.used == row.solver { row.solver.to_owned() } else { format!("{}: {}", row.solver, m.used) };
         let contacts = format!("{} {}D", row.contacts, row.dimension);
+        // One word a column, for what reads columns.
         let (residual, iterations, time) =
-            (format!("{:.1e}", m.residual), m.iterations.to_string(), in_its_unit(m.time_ms));
+            (format!("{:.1e}", m.residual), m.iterations.to_string(), in_its_unit(m.time_ms).replace(' ', ""));
         let tolerance = self.tolerance.then(|| format!("{:e}", row.tolerance));
         let asymmetry = self.asymmetry.then(|| match row.asymmetry {
             some if some > ASYMMETRIC => format!("{some:.0e}"),

@@ -201,7 +201,7 @@ impl Panels {
             let forces = forces(&curves);
             let mut panels = Self {
                 tangential: vec![true; recorder.scenery.contacts.len()],
-                redundant: redundant(recorder, &forces),
+                redundant: redundant(recorder, &curves, &forces),
                 force_units: force_units(recorder, &forces),
                 curves,
                 forces,

@@ -1,11 +1,13 @@
 //! Contacts whose forces equilibrium alone doesn't decide: rigid bodies then bear one of many sets of forces, the one that the solver comes to.
 //!
-//! Of bodies that touch each other directly or by others, each has three equations. Two points or more of a pair leave three unknowns, one leaves two;
+//! Of bodies that touch each other directly or by others, each has three equations. A pair leaves three unknowns if two of its points press, or one does
+//! and sides lie flat on each other, so that others could; else two;
 //! more unknowns than equations, and only the sum over some of the contacts follows from them. Of more than two points of one pair, only their resultant
 //! does. Contacts with duration have springs, whose forces follow from the motion: they leave no such choice.
 
-use super::curves::ForceCurve;
-use super::recorder::PageRecorder;
+use super::curves::{Curves, ForceCurve};
+use super::outline::Outline;
+use super::recorder::{BLOCK_FRAME, PageRecorder};
 use super::scenery::ContactDrawn;
 use teeter_integrator::ContactState;
 
@@ -16,7 +18,8 @@ const LOOKS: usize = 50;
 const LEAST: f64 = 0.1;
 
 /// By contacts: whether their forces are one of many sets, over a part of the run and at its end.
-pub(super) fn redundant(recorder: &PageRecorder, forces: &[Option<ForceCurve>]) -> Vec<[bool; 2]> {
+pub(super) fn redundant(recorder: &PageRecorder, curves: &Curves, forces: &[Option<ForceCurve>]) -> Vec<[bool; 2]> {
+    let borders = curves.borders();
     let contacts = &recorder.scenery.contacts;
     let buckets = forces.iter().flatten().map(|forces| forces.state.len()).max().unwrap_or(0);
     let Some(last) = buckets.checked_sub(1) else { return vec![[false; 2]; contacts.len()] };
@@ -26,7 +29,11 @@ pub(super) fn redundant(recorder: &PageRecorder, forces: &[Option<ForceCurve>]) 
     };
     let looks: Vec<Vec<bool>> = (1..=LOOKS.min(buckets))
         .map(|look| look * last / LOOKS.min(buckets))
-        .map(|bucket| at(recorder, &contacts.iter().map(|contact| pressing(contact, bucket)).collect::<Vec<_>>()))
+        .map(|bucket| {
+            let points: Vec<usize> = contacts.iter().map(|contact| pressing(contact, bucket)).collect();
+            let flat = flat(recorder, borders.get(bucket + 1).copied().unwrap_or(f64::INFINITY), &points);
+            at(recorder, &points, &flat)
+        })
         .collect();
     let at_end = |contact: usize| looks.last().is_some_and(|look| look[contact]);
     let often = |contact: usize| {
@@ -36,15 +43,38 @@ pub(super) fn redundant(recorder: &PageRecorder, forces: &[Option<ForceCurve>]) 
     (0..contacts.len()).map(|contact| [often(contact) || at_end(contact), at_end(contact)]).collect()
 }
 
-/// The same at one time, with how many points of each contact press.
-fn at(recorder: &PageRecorder, pressing: &[usize]) -> Vec<bool> {
+/// Of contacts between two blocks that press: whether they lie flat on each other, in the picture at or before `t` (s).
+fn flat(recorder: &PageRecorder, t: f64, pressing: &[usize]) -> Vec<bool> {
+    let (blocks, contacts) = (&recorder.scenery.blocks, &recorder.scenery.contacts);
+    let before = recorder.kept.frames.rows().take_while(|(at, _)| *at <= t).last();
+    let Some((_, row)) = before.or_else(|| recorder.kept.frames.rows().next()) else {
+        return vec![false; contacts.len()];
+    };
+    let poses: Vec<[f64; 3]> =
+        row.chunks_exact(BLOCK_FRAME).take(blocks.len()).map(|pose| [pose[0], pose[1], pose[2]]).collect();
+    let of = |(contact, points): (&ContactDrawn, &usize)| {
+        let Some(other) = contact.other.filter(|_| *points > 0) else { return false };
+        let outline = |block: usize| Outline::of(&blocks[block], poses[block]);
+        let (one, other) = (outline(contact.block), outline(other));
+        contact.points.iter().any(|point| {
+            let ([x, y, phi], corner) = (poses[point.block], blocks[point.block].corners.get(point.corner));
+            let (sin, cos) = phi.sin_cos();
+            corner.is_some_and(|[a, b]| one.lies_flat_on(&other, [x + cos * a - sin * b, y + sin * a + cos * b]))
+        })
+    };
+    contacts.iter().zip(pressing).map(of).collect()
+}
+
+/// The same at one time, with how many points of each contact press, and whether its sides lie flat on each other.
+fn at(recorder: &PageRecorder, pressing: &[usize], flat: &[bool]) -> Vec<bool> {
     let (blocks, contacts) = (&recorder.scenery.blocks, &recorder.scenery.contacts);
     // The bodies of each group of touching ones have one number.
     let mut group: Vec<usize> = (0..blocks.len()).collect();
     let free = |block: usize| Some(block).filter(|block| !blocks[*block].driven);
     let rigid = |contact: &ContactDrawn| [free(contact.block), contact.other.and_then(free)];
-    let touching = || contacts.iter().zip(pressing).filter(|(contact, points)| **points > 0 && !contact.has_duration);
-    for (contact, _) in touching() {
+    let all = || contacts.iter().zip(pressing).zip(flat);
+    let touching = || all().filter(|((contact, points), _)| **points > 0 && !contact.has_duration);
+    for ((contact, _), _) in touching() {
         if let [Some(a), Some(b)] = rigid(contact) {
             let (from, to) = (group[a].max(group[b]), group[a].min(group[b]));
             group.iter_mut().filter(|number| **number == from).for_each(|number| *number = to);
@@ -53,9 +83,9 @@ fn at(recorder: &PageRecorder, pressing: &[usize]) -> Vec<bool> {
     let mut surplus: Vec<isize> = vec![0; blocks.len()];
     (0..blocks.len()).filter_map(free).for_each(|block| surplus[group[block]] -= 3);
     let of = |contact: &ContactDrawn| rigid(contact).into_iter().flatten().next().map(|block| group[block]);
-    for (contact, points) in touching() {
+    for ((contact, points), flat) in touching() {
         if let Some(group) = of(contact) {
-            surplus[group] += if *points > 1 { 3 } else { 2 };
+            surplus[group] += if *points > 1 || *flat { 3 } else { 2 };
         }
     }
     let one = |(contact, points): (&ContactDrawn, &usize)| {
