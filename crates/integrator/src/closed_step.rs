@@ -382,11 +382,19 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.stage.make_room(self.middle.len());
         self.stage.belong_to(model);
         let middle = std::mem::take(&mut self.middle);
-        let posed = middle.iter().enumerate().try_for_each(|(k, candidate)| {
-            let over = self.goes_past_ends || self.rooms[0][k] >= 0.0;
-            if over { self.pose(model, state, span.h, work, candidate) } else { Ok(()) }
+        let rooms = std::mem::take(&mut self.rooms[0]);
+        let past = self.goes_past_ends;
+        let present =
+            middle.iter().zip(&rooms).filter(|(_, room)| past || **room >= 0.0).map(|(candidate, _)| candidate);
+        let pairs = present.clone().map(|candidate| (candidate.id, candidate.law));
+        let some_past = past && rooms.iter().any(|room| *room < 0.0);
+        let posed = self.stage.hand_springs_over(model, state, pairs, some_past, work).and_then(|()| {
+            present.into_iter().try_for_each(|candidate| match self.stage.is_left_out(candidate.id) {
+                true => Ok(()),
+                false => self.pose(model, state, span.h, work, candidate),
+            })
         });
-        self.middle = middle;
+        (self.middle, self.rooms[0]) = (middle, rooms);
         posed?;
         let (over, responses) = (Over::Step { h: span.h, weight: THETA }, self.step.responses(span.h));
         self.guarded.restart(self.stage.len());
@@ -448,7 +456,10 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         let rule = if law.impact.spring().is_some() {
             let gap = match state.memory.spring_gap(candidate.id) {
                 Some(gap) if gap < 0.0 => gap,
-                _ => self.gap_at_start(model, state, work, candidate.id)?.max(0.0),
+                _ => match self.stage.inherited_gap(candidate.id) {
+                    Some(gap) => gap,
+                    None => self.gap_at_start(model, state, work, candidate.id)?.max(0.0),
+                },
             };
             shift[0] = 0.0;
             SpringStep::new(&law.impact, gap, u_before[0], h, THETA).map_or(Rule::Shifted, Rule::Spring)

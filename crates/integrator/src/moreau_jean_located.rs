@@ -11,8 +11,8 @@ use crate::factors::Factors;
 use crate::moreau_jean_closed::deepest;
 use crate::theta_step::weights;
 use crate::{
-    ContactStage, Keep, Model, MoreauJeanClosedSettings, Part, STEP_ROUNDING, Scheme, SettingError, State, StepError,
-    StepReport, StepSpan, Weights, Workspace,
+    Contact, ContactStage, Keep, Model, MoreauJeanClosedSettings, Part, STEP_ROUNDING, Scheme, SettingError, State,
+    StepError, StepReport, StepSpan, Weights, Workspace,
 };
 use locate::Hit;
 pub(crate) use locate::rate_at;
@@ -410,7 +410,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
         self.step.find_what_stays();
         self.stays.clear();
         let contacts = self.step.stage.contacts().iter().zip(&self.step.stays);
-        self.stays.extend(contacts.map(|(contact, stays)| *stays && !self.leaving.contains(&contact.id)));
+        // A pressed spring is kept for the contact that takes it over.
+        let leaves = |contact: &Contact<D>| contact.gap_after.is_none() && self.leaving.contains(&contact.id);
+        self.stays.extend(contacts.map(|(contact, stays)| *stays && !leaves(contact)));
         from.warm.clear();
         from.memory.forget_contacts();
         for (contact, stays) in self.step.stage.contacts().iter().zip(&self.stays) {

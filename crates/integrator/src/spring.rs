@@ -18,8 +18,8 @@
 //! U_θ p + ΔV ≤ 0 in both, whatever h and k. As a function of U¹ the impulse falls, and is convex: Newton's method from the
 //! side of compression converges.
 
-use crate::{ImpactLaw, Memory, Mismatch, Model, Workspace};
-use teeter_detect::{Candidate, Candidates, ContactId};
+use crate::{ImpactLaw, Memory, Mismatch, Model, State, Workspace};
+use teeter_detect::{Anchor, Candidate, Candidates, ContactId, LawId};
 
 /// A contact's spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +56,12 @@ impl Spring {
     pub(crate) fn potential(&self, gap: f64) -> f64 {
         let depth = -gap;
         if depth > 0.0 { self.force(depth) * depth / (self.exponent + 1.0) } else { 0.0 }
+    }
+
+    /// The depth at which it holds so much energy (J), m.
+    fn depth_of(&self, energy: f64) -> f64 {
+        let order = self.exponent + 1.0;
+        (order * energy / self.stiffness).powf(1.0 / order)
     }
 
     /// The discrete gradient between two depths, N, and its slope in the second.
@@ -153,22 +159,111 @@ impl SpringStep {
 pub(crate) struct Springs<const D: usize> {
     /// Those that the free motion brings into contact, with their gaps at the start of the step, in order of identity.
     touched: Vec<(ContactId, f64)>,
+    /// Those that take over the spring of a contact which has ended, with the gaps that they start from, in order of identity.
+    heirs: Vec<(ContactId, f64)>,
+    /// Those whose springs were taken over.
+    taken: Vec<ContactId>,
+    /// Those that take no part.
+    left_out: Vec<ContactId>,
     /// Memory for contacts to look for.
     ids: Vec<ContactId>,
     located: Candidates<D>,
+    rooms: Vec<f64>,
 }
+
+/// A new contact takes over the spring of one that has ended if it is at least this part of that one's depth inside: where a pressed
+/// point goes over to another contact, the two depths are equal but for the way of a step.
+const AS_DEEP: f64 = 0.5;
 
 impl<const D: usize> Springs<D> {
     /// Makes room for so many contacts.
     pub(crate) fn reserve(&mut self, contacts: usize) {
         self.touched.reserve(contacts);
         self.ids.reserve(contacts);
+        self.heirs.reserve(contacts);
+        self.taken.reserve(contacts);
+        self.left_out.reserve(contacts);
         self.located.reserve(contacts);
+        self.rooms.reserve(contacts);
     }
 
     /// Forgets what was found.
     pub(crate) fn forget(&mut self) {
         self.touched.clear();
+        self.heirs.clear();
+        self.left_out.clear();
+    }
+
+    /// Finds which of the step's contacts, `present` in order of identity, take over the spring of one that has ended: where a disc rolls
+    /// over a point of a profile or on to the next beam, or a corner passes an edge, another contact goes on at the depth that the first has
+    /// reached, and holds the energy that it held. Both are followed to the start of the step, past their ends. One that is inside there
+    /// already, but not over its surface yet, waits while the one before it is present; one that is past its end there has ended, which is
+    /// looked for where there is something new, or `some_past`.
+    pub(crate) fn hand_over(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        present: impl Iterator<Item = (ContactId, LawId)> + Clone,
+        some_past: bool,
+        work: &mut Workspace<D>,
+    ) -> Result<(), Mismatch> {
+        self.heirs.clear();
+        self.left_out.clear();
+        let depth_of = |id| state.memory.spring_gap(id).filter(|gap| *gap < 0.0).map(|gap| -gap);
+        let spring_of = |law| model.law(law).ok().and_then(|law| law.impact.spring());
+        self.ids.clear();
+        self.ids.extend(
+            present.clone().filter(|(id, law)| depth_of(*id).is_none() && spring_of(*law).is_some()).map(|(id, _)| id),
+        );
+        let new = self.ids.len();
+        self.ids.extend(state.memory.active().iter().filter(|id| depth_of(**id).is_some()));
+        if (new == 0 && !some_past) || self.ids.len() == new {
+            return Ok(());
+        }
+        self.ids.sort_unstable();
+        work.locate_past_ends(model, &state.q, &self.ids, &mut self.located, &mut self.rooms)?;
+        let is_present = |id: ContactId| present.clone().any(|(other, _)| other == id);
+        for (pressed, _) in self.located.iter().zip(&self.rooms).filter(|(_, room)| **room < 0.0) {
+            if depth_of(pressed.id).is_some() {
+                self.left_out.push(pressed.id);
+            }
+        }
+        for k in 0..self.located.len() {
+            let heir = self.located[k];
+            if depth_of(heir.id).is_some() || heir.gap >= 0.0 {
+                continue;
+            }
+            let pressed = self.located.iter().filter_map(|pressed| {
+                let (depth, apart) = (depth_of(pressed.id)?, apart(&heir.sides, &pressed.sides)?);
+                (-heir.gap >= AS_DEEP * depth).then_some((pressed, depth, apart))
+            });
+            let Some((before, depth, _)) = pressed.min_by(|(.., a), (.., b)| a.total_cmp(b)) else { continue };
+            if is_present(before.id) && !self.left_out.contains(&before.id) {
+                if self.rooms[k] < 0.0 {
+                    self.left_out.push(heir.id);
+                }
+            } else if let (false, Some(spring)) = (self.taken.contains(&before.id), spring_of(heir.law)) {
+                let depth = match spring_of(before.law) {
+                    Some(other) if other != spring => spring.depth_of(other.potential(-depth)),
+                    _ => depth,
+                };
+                self.heirs.push((heir.id, -depth));
+                self.taken.push(before.id);
+            }
+        }
+        self.taken.clear();
+        Ok(())
+    }
+
+    /// Whether a contact takes no part in the step, as it has ended or waits for another to end.
+    pub(crate) fn leaves_out(&self, id: ContactId) -> bool {
+        self.left_out.contains(&id)
+    }
+
+    /// The gap with which a contact's spring takes over from one that has ended, m; `None` if it doesn't.
+    pub(crate) fn inherited(&self, id: ContactId) -> Option<f64> {
+        let at = self.heirs.binary_search_by_key(&id, |(id, _)| *id).ok()?;
+        Some(self.heirs[at].1)
     }
 
     /// Finds the contacts that the free motion from `q` to `q_free` brings into contact.
@@ -234,9 +329,16 @@ impl<const D: usize> Springs<D> {
     pub(crate) fn gap(&self, id: ContactId, memory: &Memory) -> f64 {
         match memory.spring_gap(id) {
             Some(gap) if gap < 0.0 => gap,
-            _ => self.touches(id).unwrap_or(0.0).max(0.0),
+            _ => self.inherited(id).unwrap_or_else(|| self.touches(id).unwrap_or(0.0).max(0.0)),
         }
     }
+}
+
+/// How far apart two contacts are on a body that they share, in its coordinates, m; `None` if they share none.
+fn apart<const D: usize>(one: &[Anchor<D>; 2], other: &[Anchor<D>; 2]) -> Option<f64> {
+    let pairs = one.iter().flat_map(|one| other.iter().map(move |other| (one, other)));
+    let shared = pairs.filter(|(one, other)| one.body == other.body);
+    shared.map(|(one, other)| (one.point - other.point).norm()).min_by(f64::total_cmp)
 }
 
 #[cfg(test)]

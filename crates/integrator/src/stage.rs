@@ -17,7 +17,7 @@ pub(crate) use posed::Problem;
 pub(crate) use rows::ContactRows;
 pub(crate) use solve::Members;
 use teeter_contact::{Block, ProblemError};
-use teeter_detect::{BodyId, Candidate};
+use teeter_detect::{BodyId, Candidate, ContactId, LawId};
 
 /// Why contacts can't be solved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -314,13 +314,44 @@ impl<const D: usize> ContactStage<D> {
         self.springs.look(model, &state.q, look.free.unwrap_or(look.at), work)?;
         self.springs.detect(model, look.at, &state.memory, look.within, work)?;
         self.belong_to(model);
-        for candidate in &work.candidates {
-            let spring = model.law_of(candidate.law)?.impact.spring().is_some();
-            if self.springs.admit(spring, candidate, &state.memory, look.within) {
-                self.take_in(model, look.at, candidate, &state.warm, &state.memory)?;
-            }
-        }
-        Ok(())
+        let mut admitted = std::mem::take(&mut work.candidates);
+        admitted.retain(|candidate| {
+            let spring = model.law(candidate.law).is_ok_and(|law| law.impact.spring().is_some());
+            self.springs.admit(spring, candidate, &state.memory, look.within)
+        });
+        let taken =
+            self.springs.hand_over(model, state, admitted.iter().map(|c| (c.id, c.law)), false, work).and_then(|()| {
+                let mut all = admitted.iter();
+                all.try_for_each(|candidate| match self.springs.leaves_out(candidate.id) {
+                    true => Ok(()),
+                    false => self.take_in(model, look.at, candidate, &state.warm, &state.memory).map(|_| ()),
+                })
+            });
+        work.candidates = admitted;
+        taken
+    }
+
+    /// Finds which springs of ended contacts the candidates `present`, in order of identity, take over, before they are posed. `some_past`:
+    /// whether some may be past the end of their surface at the start of the step.
+    pub(crate) fn hand_springs_over(
+        &mut self,
+        model: &Model<D>,
+        state: &State,
+        present: impl Iterator<Item = (ContactId, LawId)> + Clone,
+        some_past: bool,
+        work: &mut Workspace<D>,
+    ) -> Result<(), Mismatch> {
+        if model.has_springs() { self.springs.hand_over(model, state, present, some_past, work) } else { Ok(()) }
+    }
+
+    /// Whether a contact with a spring takes no part in the step, as it has ended, or waits until the one before it has.
+    pub(crate) fn is_left_out(&self, id: ContactId) -> bool {
+        self.springs.leaves_out(id)
+    }
+
+    /// The gap (m) with which the spring of a new contact starts that takes over from one that has ended; `None` of others.
+    pub(crate) fn inherited_gap(&self, id: ContactId) -> Option<f64> {
+        self.springs.inherited(id)
     }
 
     /// Marks that what is taken in from now on is of this model.

@@ -35,8 +35,12 @@ impl<const D: usize> Resolved<D> {
         work.locate(model, &self.q_mid, &self.ids, &mut self.middle)?;
         work.locate(model, &self.step.q_at, &self.ids, &mut self.ahead)?;
         self.find_momentum(model, from);
+        self.stage.hand_springs_over(model, from, self.middle.iter().map(|c| (c.id, c.law)), false, work)?;
         for k in 0..self.middle.len() {
             let candidate = self.middle[k];
+            if self.stage.is_left_out(candidate.id) {
+                continue;
+            }
             self.pose_one(model, from, part, work, &candidate, pass)?;
         }
         Ok(())
@@ -106,7 +110,7 @@ impl<const D: usize> Resolved<D> {
         } else if law.impact.spring().is_some() {
             let gap = match from.memory.spring_gap(candidate.id) {
                 Some(gap) if gap < 0.0 => gap,
-                _ => gap_before.max(0.0),
+                _ => self.stage.inherited_gap(candidate.id).unwrap_or_else(|| gap_before.max(0.0)),
             };
             shift[0] = 0.0;
             self.posed.push(Posed { held, resting_shift: 0.0, approach, way });

@@ -359,3 +359,32 @@ fn a_block_that_has_sunk_in_slides_past_a_ridge() {
         assert!(state.tally.max_penetration < 1e-4, "{left}: {:e} m", state.tally.max_penetration);
     }
 }
+
+/// A disc that rolls on compliant ground keeps the depth at which it carries its weight, whatever points the ground's profile has, and
+/// where a step ends on one; so it does where it goes on to brick after brick.
+#[test]
+fn a_compliant_contact_goes_over_points_at_its_depth() {
+    for (scheme, step) in [
+        ("moreau-jean", "1 ms"),
+        ("moreau-jean", "130 us"),
+        ("moreau-jean-closed", "100 us"),
+        ("moreau-jean-closed", "130 us"),
+        ("moreau-jean-located", "100 us"),
+        ("moreau-jean-located", "130 us"),
+    ] {
+        let text = format!(
+            "[time]\nend = '1.2 s'\nstep = '{step}'\nscheme = '{scheme}'\n\
+             [ground]\nprofile = {{ points = [['-1 m', '0 m'], ['5 cm', '0 m'], ['10 cm', '0 m'], ['15 cm', '0 m'], ['1 m', '0 m']] }}\n\
+             [block.d]\ndensity = '7800 kg/m^3'\nradius = '2 cm'\ndepth = '10 cm'\n\
+             position = ['0 m', '2 cm']\nvelocity = ['0.2 m/s', '0 m/s']\nspin = '-10 rad/s'\n\
+             [contact.c]\nbetween = ['d', 'ground']\nfriction = 0.5\nlaw = 'kelvin-voigt'\nstiffness = '1e5 N/m'\ndamping = '100 N s/m'\n"
+        );
+        let mut run = Simulation::new(&resolved(&text).scene).unwrap();
+        assert_eq!(run.run(&mut []).unwrap(), Ended::Complete);
+        let weight = 7800.0 * std::f64::consts::PI * 0.02_f64.powi(2) * 0.1 * 9.81;
+        let depth = 0.02 - run.state.q[1];
+        assert!((depth / (weight / 1e5) - 1.0).abs() < 1e-6, "{scheme}, {step}: {depth:e} m");
+        let ledger = &run.state.ledger;
+        assert!(ledger.positive_contact_work.sum <= 1e-12 * ledger.scale, "{scheme}, {step}: {ledger:?}");
+    }
+}
