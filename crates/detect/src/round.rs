@@ -55,7 +55,15 @@ const EQUAL: f64 = 1e-9;
 /// no direction from each other.
 pub(crate) fn near_outline(feature: CornerOnSide, owner: &Outline<'_>, other: &Outline<'_>) -> Option<Touch> {
     let corner = owner.corners.get(feature.corner.checked_sub(owner.first)?)?;
-    let Nearest { foot, normal, distance, .. } = nearest(other, &other.frame.local(&owner.frame.point(corner)))?;
+    let place = other.frame.local(&owner.frame.point(corner));
+    let radii = owner.radius + other.radius;
+    let mut near = nearest(other, &place)?;
+    if near.distance < radii
+        && let Some(along) = overlap(owner, other)
+    {
+        near = along_overlap(along, owner, other, &place, radii).unwrap_or(near);
+    }
+    let Nearest { foot, normal, distance, .. } = near;
     let on_other = foot + normal * other.radius;
     let normal = other.frame.turned(&normal);
     let on_owner = corner - owner.frame.unturned(&normal) * owner.radius;
@@ -63,8 +71,82 @@ pub(crate) fn near_outline(feature: CornerOnSide, owner: &Outline<'_>, other: &O
         0 => ([on_owner, on_other], normal),
         _ => ([on_other, on_owner], -normal),
     };
-    let gap = distance - owner.radius - other.radius;
+    let gap = distance - radii;
     gap.is_finite().then(|| Touch { feature: feature.number(), points, normal, gap, room: f64::INFINITY })
+}
+
+/// The side along whose normal two cores that overlap are least deep in each other.
+#[derive(Clone, Copy)]
+enum LeastDeep {
+    OfOwner(usize),
+    OfOther(usize),
+}
+
+/// A side of the owner counts if the overlap along its normal is less than this part of that along one of the other's: sides that lie on
+/// each other overlap by as much.
+const CLEARLY_LESS: f64 = 0.9;
+
+/// Along which side two cores overlap least; `None` where they don't overlap, or one of them has no sides. From a corner alone it can't be
+/// told: of two flush blocks one above the other, one that has sunk in is as near to the flank of the other as to its top.
+fn overlap(owner: &Outline<'_>, other: &Outline<'_>) -> Option<LeastDeep> {
+    if owner.corners.len() < 2 || other.corners.len() < 2 {
+        return None;
+    }
+    let (side, of_other) = least_deep(other, owner)?;
+    let (own_side, of_owner) = least_deep(owner, other)?;
+    // Heights below a side, so that the greater is the less deep.
+    Some(if of_owner > CLEARLY_LESS * of_other { LeastDeep::OfOwner(own_side) } else { LeastDeep::OfOther(side) })
+}
+
+/// The side of one core beyond which another one reaches least, and how far that is, m, negative; `None` if that is beyond a side
+/// altogether.
+fn least_deep(of: &Outline<'_>, another: &Outline<'_>) -> Option<(usize, f64)> {
+    let mut best: Option<(usize, f64)> = None;
+    for (side, (corner, normal)) in of.corners.iter().zip(of.normals).enumerate() {
+        let height = |other: &Vector<2>| normal.dot(&(of.frame.local(&another.frame.point(other)) - corner));
+        let lowest = another.corners.iter().map(height).fold(f64::INFINITY, f64::min);
+        // Written so that NaN is apart.
+        if !(lowest < 0.0) {
+            return None;
+        }
+        if best.is_none_or(|(_, known)| lowest > known) {
+            best = Some((side, lowest));
+        }
+    }
+    best
+}
+
+/// What of the other core is nearest to a corner, at `place` in its coordinates, along the normal of the side by which the cores overlap
+/// least; `None` for a corner that isn't beside that side.
+fn along_overlap(
+    least: LeastDeep,
+    owner: &Outline<'_>,
+    other: &Outline<'_>,
+    place: &Vector<2>,
+    radii: f64,
+) -> Option<Nearest> {
+    match least {
+        LeastDeep::OfOther(k) => {
+            let (start, end) = (other.corners[k], other.corners[(k + 1) % other.corners.len()]);
+            let (side, normal) = (end - start, other.normals[k]);
+            let along = (place - start).dot(&side) / side.norm_squared();
+            let beyond = radii / side.norm();
+            if !(-beyond..=1.0 + beyond).contains(&along) {
+                return None;
+            }
+            let foot = start + side * along.clamp(0.0, 1.0);
+            Some(Nearest { foot, normal, distance: normal.dot(&(place - start)), on: On::Side(k) })
+        }
+        LeastDeep::OfOwner(k) => {
+            let normal = -other.frame.unturned(&owner.frame.turned(&owner.normals[k]));
+            // The corner of the other core that is deepest in that side.
+            let (deepest, height) = (0..other.corners.len())
+                .map(|corner| (corner, normal.dot(&other.corners[corner])))
+                .max_by(|a, b| a.1.total_cmp(&b.1))?;
+            let distance = normal.dot(place) - height;
+            Some(Nearest { foot: place - normal * distance, normal, distance, on: On::Corner(deepest) })
+        }
+    }
 }
 
 /// The point of a core's outline that is nearest to a point, the way from there, and the distance,
