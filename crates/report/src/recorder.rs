@@ -454,6 +454,7 @@ impl Observer<2> for Recorder<'_> {
     ) -> Result<ControlFlow<()>, ObserverError> {
         self.take_contacts(step);
         self.take_closings(model, step, state)?;
+        self.warn_of_crests();
         self.warn_of_unsolved(step);
         self.warn_of_limits(state);
         let swing = self.kept.swings.observe(&mut self.watch, self.layout, step.h, state);

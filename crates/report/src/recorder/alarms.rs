@@ -2,9 +2,11 @@
 
 use super::{Kept, Recorder};
 use crate::bounces::{CONTESTED, Contested};
+use crate::closed::Closed;
 use crate::resolution::{Of, raise};
 use crate::{shortest, with_digits, with_unit};
-use teeter_integrator::{Model, State, StepReport};
+use teeter_detect::OnSide;
+use teeter_integrator::{Closing, Model, State, StepReport};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::{FAR_TURN, deflection};
 
@@ -95,6 +97,27 @@ impl Recorder<'_> {
                 landed.point,
                 time(t),
                 cut.point
+            )
+        });
+    }
+
+    /// Warns, once, of a crest of a beam that strikes a base between its corners.
+    pub(super) fn warn_of_crests(&mut self) {
+        let layout = self.layout;
+        let impacts = self.closed.iter().filter(|closed| closed.closing == Closing::Impact);
+        let on_crest = |closed: &Closed| {
+            let pair = layout.pairs.get(closed.contact.id.pair() as usize)?;
+            let point = &pair.points[pair.point(closed.contact.id)?];
+            let is_crest = matches!(point.on_side, Some(OnSide::Summit(_)));
+            is_crest.then_some((closed.t, &pair.name, &layout.blocks[point.block].name))
+        };
+        let Some((t, contact, name)) = impacts.filter_map(on_crest).next() else { return };
+        self.warn_once("crest-impact", t, || {
+            format!(
+                "contact `{contact}`: a crest of the beam struck the base of `{name}` between its corners at t = {}; a base that comes down \
+                 rolls over a crest without impacts, but only where steps are short enough for that: compare peaks with shorter steps, or \
+                 take `points = \"corners\"`, which leaves crests out",
+                time(t)
             )
         });
     }
