@@ -197,7 +197,7 @@ enum Command {
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
         jobs: Option<u16>,
         /// Run only shard I of N, such as 2/8, for one of several machines
-        #[arg(long, value_name = "I/N")]
+        #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
         shard: Option<teeter_study::sweep::Shard>,
         /// Continue the study in the folder: run only the cases that have no row yet
         #[arg(long, conflicts_with = "force")]
@@ -324,7 +324,7 @@ enum Command {
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
         samples: Option<u16>,
         /// Seed of these values
-        #[arg(long, value_name = "N", default_value = "1")]
+        #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true)]
         seed: u64,
         /// Number of runs at once (default: one for each core)
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]

@@ -30,7 +30,7 @@ pub(crate) struct MeasuredOptions {
     #[arg(long = "unit", value_name = "NAME=UNIT", value_parser = crate::key_value)]
     unit: Vec<(String, String)>,
     /// Rows per second, for a table without times or with numbers of frames, such as "165 Hz"
-    #[arg(long, value_name = "RATE", value_parser = rate)]
+    #[arg(long, value_name = "RATE", value_parser = rate, allow_hyphen_values = true)]
     rate: Option<f64>,
     /// The block that was measured (default: the only one)
     #[arg(long, value_name = "NAME")]

@@ -194,6 +194,11 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
         .and_then(|()| write_parquet(results, &study.sweep))
         .and_then(|()| Tally::of(results.folder(), &study.sweep));
     match written {
+        // A mistake that concerns all cases, such as a value without its unit, is told in quiet runs, too.
+        Ok(tally) if tally.incomplete == tally.cases && shard == Shard::ALL => {
+            console
+                .error(&format!("warning: none of {total} cases has a result; the first one: {}", tally.first_error));
+        }
         Ok(tally) => notes(console, &study.sweep, &tally),
         Err(error) => {
             console.error(&format!("error: {error}"));

@@ -125,6 +125,10 @@ pub enum FitError {
 /// Reports progress: phase, how many of how many are done.
 pub type ReportFit<'a> = dyn FnMut(&str, usize, usize) + Send + 'a;
 
+/// A sum of squares so many of its standard deviations above that of noise isn't noise.
+const IMPROBABLE: f64 = 3.0;
+/// How many times as many values are tried at first where a fit leaves more than noise.
+const MORE: usize = 4;
 /// Samples that are improved, and besides the scene's own values.
 const STARTS: usize = 4;
 /// How much of the motion is fitted one after the other, with the distance of differences, as a share
@@ -145,11 +149,41 @@ impl Fit {
     /// Values all over the ranges (a Latin hypercube) are tried first, as a rocking motion has many
     /// local minima: a wrong number of impacts. The best of them, and the scene's own, are improved
     /// by Levenberg and Marquardt's method, and the best result of that by a simplex, which needs no
-    /// derivatives. Rows beyond the horizon of the best values don't count.
+    /// derivatives. Rows beyond the horizon of the best values don't count. Where what is left is more than noise, and the number of values
+    /// to try first isn't given, all is done once more with four times as many: the least minimum may be narrow.
     ///
     /// # Errors
     /// If nothing can be compared, or the user interrupts.
     pub fn of(
+        source: &StudyScene,
+        resolved: &Resolved,
+        block: usize,
+        measured: &Measured,
+        keys: &[FitKey],
+        settings: &FitSettings,
+        cancel: &Arc<AtomicBool>,
+        report: &mut ReportFit<'_>,
+    ) -> Result<Self, FitError> {
+        let mut once = |settings: &FitSettings| {
+            Self::once(source, resolved, block, measured, keys, settings, cancel, &mut *report)
+        };
+        let first = once(settings)?;
+        if settings.samples.is_some() || !first.is_misfit() {
+            return Ok(first);
+        }
+        let second = once(&FitSettings { samples: Some(MORE * samples(keys)), ..settings.clone() })?;
+        let (mut better, other) = if second.misfit < first.misfit { (second, first) } else { (first, second) };
+        better.evaluations.extend(other.evaluations);
+        Ok(better)
+    }
+
+    /// Whether more is left than noise explains.
+    #[must_use]
+    pub fn is_misfit(&self) -> bool {
+        self.misfit > IMPROBABLE
+    }
+
+    fn once(
         source: &StudyScene,
         resolved: &Resolved,
         block: usize,
@@ -291,6 +325,11 @@ fn confidence_of_best(
     }
 }
 
+/// How many values are tried at first.
+fn samples(keys: &[FitKey]) -> usize {
+    16 * (keys.len() + 1)
+}
+
 /// The scene's own values as shares of the ranges, if all are numbers in them.
 fn own_values(resolved: &Resolved, keys: &[FitKey]) -> Option<Vec<f64>> {
     let one = |key: &FitKey| {
@@ -349,7 +388,7 @@ fn search<'a>(
     if let Some((channel, _)) = objectives[0].motion.channels.iter().find(|(_, values)| still(values)) {
         return Err(FitError::Constant(channel.title()));
     }
-    let count = settings.samples.unwrap_or(16 * (keys.len() + 1)).clamp(1, 10_000);
+    let count = settings.samples.unwrap_or(samples(keys)).clamp(1, 10_000);
     let sampler =
         Sampler::new(settings.seed, Method::LatinHypercube, keys.len(), u32::try_from(count).unwrap_or(u32::MAX));
     let mut places: Vec<Vec<f64>> = own.into_iter().map(<[f64]>::to_vec).collect();

@@ -25,9 +25,6 @@ pub const FILES: [&str; 10] = [
 /// A key whose standard error is more than this share of its range is hardly determined.
 const HARDLY: f64 = 0.15;
 
-/// Residuals whose sum of squares is above that of noise by so many standard deviations are more than noise.
-const IMPROBABLE: f64 = 3.0;
-
 /// Another minimum with a sum of squares up to so many times the least is told.
 const HARDLY_WORSE: f64 = 2.0;
 
@@ -98,7 +95,7 @@ pub fn json(fit: &Fit, scene: &str, measured: &str, block: &str) -> String {
         "residuals": fit.residuals,
         "residual_correlation": fit.residual_correlation,
         "misfit": fit.misfit,
-        "is_misfit": is_misfit(fit),
+        "is_misfit": fit.is_misfit(),
         "minima_hardly_worse": hardly_worse(fit).map(|(values, cost)| json!({ "values": values, "cost": cost })).collect::<Vec<_>>(),
         "horizon": fit.horizon,
         "fitted_until": fit.until,
@@ -116,10 +113,6 @@ fn spaced(unit: &str) -> String {
 }
 
 /// Whether what is left is too much for noise.
-fn is_misfit(fit: &Fit) -> bool {
-    fit.misfit > IMPROBABLE
-}
-
 /// Values outside the intervals at which other starts ended, with hardly more left.
 fn hardly_worse(fit: &Fit) -> impl Iterator<Item = &(Vec<f64>, f64)> {
     let outside = |values: &[f64]| {
@@ -206,7 +199,12 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
         .collect();
     for found in &fit.estimates {
         if found.at_bound {
-            texts.push(format!("warning: {} is at the bound of its range: widen it", found.name));
+            // Where the motion says nothing, a wider range wouldn't help.
+            let remedy = match found.share_of_range {
+                Some(share) if !(share <= HARDLY) => "",
+                _ => ": widen it",
+            };
+            texts.push(format!("warning: {} is at the bound of its range{remedy}", found.name));
         }
         if let Some((low, high)) = found.as_good {
             let decimals = decimals_of(0.25 * (high - low)).unwrap_or(5);
@@ -257,18 +255,25 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
     } else {
         told
     });
-    if is_misfit(fit) {
+    if fit.is_misfit() {
         texts.push(format!(
-            "warning: what is left is more than noise ({} standard deviations above it): this is another minimum, or a key that was held has a wrong value; don’t trust the intervals",
+            "warning: what is left is more than noise ({} standard deviations above it): this is another minimum, or a key that was held has a wrong value; don’t trust the intervals (`--samples` tries more values, `--seed` others)",
             short(fit.misfit)
         ));
     }
+    let short_horizon = fit.until < 0.5 * fit.comparison.trace.end();
     let cut = if fit.until < fit.comparison.trace.end() { "its horizon" } else { "the end of the run" };
     texts.push(format!(
-        "fitted up to t = {:.3} s ({cut}), {} of {} rows",
+        "{}fitted up to t = {:.3} s ({cut}), {} of {} rows{}",
+        if short_horizon { "warning: " } else { "" },
         fit.until,
         fit.rows,
-        fit.comparison.measured.t.len()
+        fit.comparison.measured.t.len(),
+        if short_horizon {
+            ": a shorter step may make more of the motion predictable, as `teeter run --horizon` tells"
+        } else {
+            ""
+        }
     ));
     texts.push("the 95 % intervals hold if the keys that were not varied have the right values".to_owned());
     texts.push(match fit.restarts.get(1) {

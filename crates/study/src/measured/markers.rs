@@ -12,6 +12,10 @@ pub struct MarkerResidual {
     pub max: f64,
     /// Its time, as in the table, s.
     pub t: f64,
+    /// Root mean square distance of the markers on the body from their middle, m.
+    pub size: f64,
+    /// As `rms`, for the mirror image of what was seen.
+    pub mirrored: f64,
     /// Whether the places of the markers were given, so that the position of the mass centre is
     /// known.
     pub placed: bool,
@@ -44,6 +48,13 @@ pub(super) fn rigid_fit(body: &[[f64; 2]], seen: &[[f64; 2]]) -> Pose {
     let (sin, cos) = phi.sin_cos();
     let origin = [to[0] - cos * from[0] + sin * from[1], to[1] - sin * from[0] - cos * from[1]];
     Pose { origin, phi }
+}
+
+/// Root mean square distance of points from their middle.
+pub(super) fn size_of(points: &[[f64; 2]]) -> f64 {
+    let n = points.len().max(1) as f64;
+    let mean = [0, 1].map(|k| points.iter().map(|point| point[k]).sum::<f64>() / n);
+    (points.iter().map(|point| (point[0] - mean[0]).powi(2) + (point[1] - mean[1]).powi(2)).sum::<f64>() / n).sqrt()
 }
 
 impl Pose {

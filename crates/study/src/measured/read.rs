@@ -2,7 +2,7 @@
 
 use super::LARGEST_FILE;
 use super::layout::{ColumnLayout, ColumnSpec, NAMES};
-use super::markers::{MarkerResidual, rigid_fit};
+use super::markers::{MarkerResidual, rigid_fit, size_of};
 use super::motion::{Channel, MeasuredMotion, Sign};
 use super::table::{TextTable, is_not_a_number, number};
 use std::cell::RefCell;
@@ -139,7 +139,20 @@ impl Measured {
         let mut channels = Vec::new();
         for channel in Channel::ALL {
             let from_markers = matches!(channel, Channel::Phi | Channel::X | Channel::Y) && !markers.is_empty();
-            let Some(spec) = columns.wanted(layout, channel.word(), block).filter(|_| !from_markers) else { continue };
+            let wanted = columns.wanted(layout, channel.word(), block).filter(|_| !from_markers);
+            let Some(spec) = wanted else {
+                // What is said of a column that isn't read would be lost.
+                if layout.columns.contains_key(channel.word()) {
+                    let word = channel.word();
+                    return Err(match from_markers {
+                        true => MeasuredError::Columns(format!(
+                            "{word} comes from the markers: leave its column and unit out, and give the markers their own `unit`"
+                        )),
+                        false => columns.missing(word, word),
+                    });
+                }
+                continue;
+            };
             let mut values = columns.read(&spec, channel.word(), channel.dimension())?;
             if layout.y_down && matches!(channel, Channel::Y | Channel::Vy) {
                 values.iter_mut().for_each(|y| *y = -*y);
@@ -229,7 +242,7 @@ impl Measured {
         let Some(body) = given.filter(|at| !at.is_empty()).or_else(first).filter(|body| body.len() > 1) else {
             return (Vec::new(), None, false);
         };
-        let (mut poses, mut sum, mut count, mut worst) = (Vec::new(), 0.0, 0_usize, (0.0, 0.0));
+        let (mut poses, mut sum, mut mirrored, mut count, mut worst) = (Vec::new(), 0.0, 0.0, 0_usize, (0.0, 0.0));
         let mut last = 0.0;
         for row in 0..self.t.len() {
             let Some(points) = seen(row) else {
@@ -237,6 +250,12 @@ impl Measured {
                 continue;
             };
             let pose = rigid_fit(&body, &points);
+            let upside_down: Vec<[f64; 2]> = points.iter().map(|[x, y]| [*x, -y]).collect();
+            let turned = rigid_fit(&body, &upside_down);
+            for (point, place) in upside_down.iter().zip(&body) {
+                let at = turned.of(*place);
+                mirrored += (point[0] - at[0]).powi(2) + (point[1] - at[1]).powi(2);
+            }
             for (point, place) in points.iter().zip(&body) {
                 let at = pose.of(*place);
                 let off = (point[0] - at[0]).hypot(point[1] - at[1]);
@@ -251,8 +270,9 @@ impl Measured {
             last = phi;
             poses.push([pose.origin[0], pose.origin[1], phi]);
         }
-        let rms = (sum / count.max(1) as f64).sqrt();
-        let residual = MarkerResidual { markers: body.len(), rms, max: worst.0, t: worst.1, placed };
+        let [rms, mirrored] = [sum, mirrored].map(|sum: f64| (sum / count.max(1) as f64).sqrt());
+        let size = size_of(&body);
+        let residual = MarkerResidual { markers: body.len(), rms, max: worst.0, t: worst.1, size, mirrored, placed };
         (poses, Some(residual), placed)
     }
 }
@@ -349,9 +369,20 @@ impl Columns<'_> {
             ));
         }
         let heading = self.names.get(place).and_then(|(_, unit)| unit.as_deref());
+        let factor = |unit: &str| quantity::parse(&format!("1 {unit}"), dimension);
+        if let (Some(given), Some(heading)) = (spec.unit.as_deref(), heading)
+            && let (Ok(by_spec), Ok(by_heading)) = (factor(given), factor(heading))
+            && by_spec != by_heading
+        {
+            return Err(MeasuredError::Columns(format!(
+                "the unit `{}` of {what} contradicts its heading, which says `{}`: leave the unit out, or correct the heading",
+                printable(given),
+                printable(heading)
+            )));
+        }
         let scale = match spec.unit.as_deref().or(heading) {
             None => 1.0,
-            Some(unit) => quantity::parse(&format!("1 {unit}"), dimension).map_err(|error| {
+            Some(unit) => factor(unit).map_err(|error| {
                 MeasuredError::Columns(format!("the unit `{}` of {what}: {error}{}", printable(unit), remedy(&error)))
             })?,
         };
@@ -402,10 +433,42 @@ impl Columns<'_> {
         MeasuredError::Columns(format!("no column `{}` for {what}: {there}{near}", printable(name)))
     }
 
+    /// Refuses to take rows for consecutive frames where a column counts frames and skips some.
+    fn refuse_lost_frames(&self) -> Result<(), MeasuredError> {
+        let counts = ["frame", "sample", "index"];
+        let named =
+            self.names.iter().position(|(name, _)| counts.iter().any(|word| name.to_lowercase().contains(word)));
+        let Some(place) = named else { return Ok(()) };
+        let value = |(line, cells): &(usize, Vec<String>)| {
+            Some((*line, number(cells.get(place)?, self.table.decimal_comma).filter(|value| value.fract() == 0.0)?))
+        };
+        let frames: Option<Vec<(usize, f64)>> = self.table.rows.iter().map(value).collect();
+        let Some(frames) = frames else { return Ok(()) };
+        let skips = frames.windows(2).find(|pair| pair[1].1 > pair[0].1 + 1.0);
+        let rises = frames.windows(2).all(|pair| pair[1].1 > pair[0].1);
+        match skips.filter(|_| rises) {
+            None => Ok(()),
+            Some(pair) => {
+                let name = printable(&self.names[place].0);
+                Err(MeasuredError::line(
+                    pair[1].0,
+                    format!(
+                        "the column `{name}` goes from {} to {}, so that rows aren't consecutive frames: count by it, --column \
+                         t=\"{name}\"",
+                        pair[0].1, pair[1].1
+                    ),
+                ))
+            }
+        }
+    }
+
     fn times(&self, layout: &ColumnLayout, block: &str) -> Result<Vec<f64>, MeasuredError> {
         let spec = self.wanted(layout, "t", block);
         let times = match (layout.rate, spec) {
-            (Some(rate), None) => (0..self.table.rows.len()).map(|row| row as f64 / rate).collect(),
+            (Some(rate), None) => {
+                self.refuse_lost_frames()?;
+                (0..self.table.rows.len()).map(|row| row as f64 / rate).collect()
+            }
             // With a rate, a column of times counts frames.
             (Some(rate), Some(spec)) if layout.columns.contains_key("t") => {
                 let frames = self.read(&ColumnSpec { unit: None, ..spec }, "t", Dimension::NONE)?;

@@ -83,6 +83,11 @@ impl Find {
             reader.wrong("find.tolerance", Some(node), "must be greater than 0", EXAMPLE);
             return None;
         }
+        if tolerance.value >= high.value - low.value {
+            let rule = "must be less than the distance of low and high: nothing would be looked for";
+            reader.wrong("find.tolerance", Some(node), rule, EXAMPLE);
+            return None;
+        }
         Some(Self { key, low, high, tolerance: tolerance.value, scan, until })
     }
 

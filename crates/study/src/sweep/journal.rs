@@ -250,7 +250,9 @@ fn sorted<'t>(texts: impl Iterator<Item = &'t str>) -> Vec<(u64, &'t str)> {
 pub fn write_results(results: &Results, sweep: &Sweep) -> Result<(), JournalError> {
     let path = results.folder().join(JOURNAL);
     let text = fs::read_to_string(&path).map_err(io_error(&path))?;
-    results.write(RESULTS, table(&sweep.header(), &sorted(std::iter::once(text.as_str()))))?;
+    let mut rows = sorted(std::iter::once(text.as_str()));
+    rows.retain(|(case, _)| *case < sweep.cases());
+    results.write(RESULTS, table(&sweep.header(), &rows))?;
     // On the disk before its only other copy goes: a power cut must not take a study.
     let written = results.folder().join(RESULTS);
     File::open(&written).and_then(|file| file.sync_all()).map_err(io_error(&written))?;

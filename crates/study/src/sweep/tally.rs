@@ -17,6 +17,8 @@ pub struct Tally {
     pub several_limits: u64,
     /// The outputs that have no value in any case.
     pub empty: Vec<String>,
+    /// What the first case that didn't come to its end says.
+    pub first_error: String,
 }
 
 impl Tally {
@@ -31,6 +33,7 @@ impl Tally {
         let header = reader.headers().map_err(wrong)?.clone();
         let place = |name: &str| header.iter().position(|column| column == name);
         let [status, unsolved, changes] = ["status", "unsolved_steps", "find.changes"].map(place);
+        let error = place("error");
         let mut outputs: Vec<(&str, Option<usize>)> =
             sweep.outputs().iter().map(|output| (output.name(), place(output.name()))).collect();
         let mut tally = Self::default();
@@ -39,7 +42,12 @@ impl Tally {
             let cell = |place: Option<usize>| place.and_then(|place| row.get(place)).unwrap_or_default();
             let count = |place: Option<usize>| cell(place).parse::<u64>().unwrap_or(0);
             tally.cases += 1;
-            tally.incomplete += u64::from(!matches!(cell(status), "complete" | "stopped"));
+            if !matches!(cell(status), "complete" | "stopped") {
+                tally.incomplete += 1;
+                if tally.incomplete == 1 {
+                    cell(error).clone_into(&mut tally.first_error);
+                }
+            }
             tally.unsolved += u64::from(count(unsolved) > 0);
             tally.several_limits += u64::from(count(changes) > 1);
             outputs.retain(|(_, place)| cell(*place).is_empty());
@@ -63,7 +71,8 @@ mod tests {
         let sweep = Sweep::read(sweep, "f", &|_, _| Err(String::new())).unwrap();
         let found = Tally::of(&folder, &sweep).unwrap();
         std::fs::remove_dir_all(&folder).unwrap();
-        let expected = Tally { cases: 3, incomplete: 1, unsolved: 1, several_limits: 1, empty: vec!["b".to_owned()] };
+        let (empty, first_error) = (vec!["b".to_owned()], "x, y".to_owned());
+        let expected = Tally { cases: 3, incomplete: 1, unsolved: 1, several_limits: 1, empty, first_error };
         assert_eq!(found, expected);
     }
 }

@@ -86,6 +86,7 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
             short(found.t)
         ));
     }
+    texts.extend(not_rigid(measured));
     let origins = comparison.channels.iter().filter(|found| found.channel.has_own_origin() && found.is_measured);
     for found in origins {
         let word = found.channel.word();
@@ -94,11 +95,12 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
             fixed(1e3 * found.origin, 2)
         ));
     }
-    if alignment.mismatch > 0.1 {
+    let mismatch = mismatch(comparison);
+    if mismatch > UNLIKE {
         texts.push(format!(
             "the motions hardly match: with the best alignment their mean square difference is {} of what unrelated motions \
              have",
-            percent(alignment.mismatch)
+            percent(mismatch)
         ));
     }
     texts.extend(
@@ -110,6 +112,47 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
     );
     texts.extend(tilt(comparison));
     texts
+}
+
+/// A larger share of the mean square difference of unrelated motions is told.
+const UNLIKE: f64 = 0.1;
+
+/// The mean square difference as a share of that of unrelated motions: of the rows by which the motions were aligned or, if that is more,
+/// of those that are compared. A block that is held for long before its release matches there whatever it does later.
+fn mismatch(comparison: &Comparison) -> f64 {
+    let aligned = comparison.alignment.mismatch;
+    let Some(found) = comparison.channels.iter().find(|found| found.is_measured) else { return aligned };
+    let pairs = || {
+        let both = found.measured.value.iter().copied().zip(found.simulated.value.iter().copied());
+        both.filter(|(measured, simulated)| measured.is_finite() && simulated.is_finite())
+    };
+    let n = pairs().count() as f64;
+    let mean = |pick: fn((f64, f64)) -> f64| {
+        if found.channel.has_own_origin() { pairs().map(pick).sum::<f64>() / n } else { 0.0 }
+    };
+    let (a, b) = (mean(|pair| pair.0), mean(|pair| pair.1));
+    let (off, all) = pairs().fold((0.0, 0.0), |(off, all), (x, y)| {
+        let (x, y) = (x - a, y - b);
+        (off + (x - y) * (x - y), all + x * x + y * y)
+    });
+    if all > 0.0 { aligned.max(off / all) } else { aligned }
+}
+
+/// Markers that miss their places on the block by more than this share of their distances aren't on one rigid body.
+const NOT_RIGID: f64 = 0.03;
+
+/// Says that the markers don't fit a rigid body, and what may be wrong.
+fn not_rigid(measured: &MeasuredMotion) -> Option<String> {
+    let found = measured.markers.filter(|found| found.rms > NOT_RIGID * found.size)?;
+    let why = if found.mirrored < 0.25 * found.rms {
+        "turned upside down they fit: is `y_down` right?"
+    } else {
+        "are two of them swapped, or is one given the wrong place?"
+    };
+    Some(format!(
+        "the markers don’t fit a rigid body: they miss it by {} of their distance from their middle; {why}",
+        percent(found.rms / found.size)
+    ))
 }
 
 /// Says of a measured quantity that it shows no motion.
@@ -144,7 +187,7 @@ fn tilt(comparison: &Comparison) -> Option<String> {
     let uncertain = found.measured.noise / (d.rows as f64).sqrt();
     let constant = d.mean.powi(2) >= CONSTANT_FROM * d.rms.powi(2) && d.mean.abs() > 5.0 * uncertain;
     // Of motions that hardly match a constant says nothing, and one that is within their rounding isn't seen.
-    if !constant || d.mean.abs() < 1e-3 * d.scale || comparison.alignment.mismatch > 0.1 {
+    if !constant || d.mean.abs() < 1e-3 * d.scale || mismatch(comparison) > UNLIKE {
         return None;
     }
     // While the block is held, nothing else sets them apart, and the shift found doesn't matter.
