@@ -124,7 +124,7 @@ pub(crate) fn compare(folders: &[PathBuf], out: &Path, figure_width: f64, force:
     };
     match study_figures(&studies) {
         Ok(figures) if figures.is_empty() => {
-            let help = "give all of them [fragility] or [distribution]";
+            let help = "give all of them [fragility], [distribution] or [bands]";
             return refused(format!("error: the sweep files ask for no figure in common\n  help: {help}"));
         }
         Ok(_) => {}

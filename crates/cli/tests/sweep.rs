@@ -542,3 +542,42 @@ fn studies_are_compared_and_a_study_does_not_differ_from_itself() {
     let again = teeter(&folder, &["sweep", "--compare", "one", "squat", "--out", "both"]);
     assert_eq!(again.status.code(), Some(2), "results are not overwritten");
 }
+
+/// Until the block has turned back, larger tilts lie farther out: the bands are those of the runs with the tilts at these shares.
+#[test]
+fn bands_are_quantiles_of_the_motions() {
+    let sweep = "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = { from = \"1 deg\", to = \"9 deg\", count = 41 }\n\
+        [bands]\nof = \"rocker.phi\"\nuntil = \"50 ms\"\ntimes = 5\n";
+    let folder = study("bands", sweep);
+    done(&folder, &["sweep", "sweep.toml", "--out", "all"]);
+    let (bands, results) = (table(&folder.join("all/bands.csv")), table(&folder.join("all/results.csv")));
+    assert_eq!(bands[0].join(","), "study,t,cases,p2.5,p16,median,p84,p97.5");
+    assert_eq!((bands.len(), results.len()), (7, 42));
+    let place = results[0].iter().position(|name| name == "rocker.phi@0.05").unwrap();
+    let number = |cell: &String| cell.parse::<f64>().unwrap();
+    let of_case = |case: usize| number(&results[1 + case][place]).abs();
+    let last: Vec<f64> = bands[6][3..].iter().map(|cell| number(cell).abs()).collect();
+    let mut shown = [last[0], last[2], last[4]];
+    shown.sort_by(f64::total_cmp);
+    // A share of 2.5 % of 41 cases is the second, and 97.5 % the last but one.
+    for (found, case) in shown.iter().zip([1, 20, 39]) {
+        assert!((found - of_case(case)).abs() < 1e-12, "{case}: {found} {}", of_case(case));
+    }
+    let page = std::fs::read_to_string(folder.join("all/study.html")).unwrap();
+    assert!(page.contains("id=\"bands\"") && page.contains("φ of rocker (rad)"), "no figure");
+    for (text, told) in [
+        ("of = \"rocker.phy\"\nuntil = \"50 ms\"", "rocker.phy"),
+        ("of = \"rocker.phi\"\nuntil = \"5 s\"", "after the end of the runs"),
+        ("of = \"rocker.phi\"\nuntil = 5", "with its unit"),
+        ("of = \"rocker.phi\"\nuntil = \"5 kg\"", "bands.until"),
+        ("until = \"5 s\"", "bands.of"),
+        ("of = \"rocker.phi\"\nuntil = \"50 ms\"\ntimes = 0", "bands.times"),
+    ] {
+        let sweep = format!("scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n[bands]\n{text}\n");
+        std::fs::write(folder.join("wrong.toml"), sweep).unwrap();
+        let output = teeter(&folder, &["sweep", "wrong.toml", "--out", "wrong"]);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && error.contains(told), "{text}: {error}");
+        assert_eq!(error.matches("error: ").count(), 1, "{text}: {error}");
+    }
+}

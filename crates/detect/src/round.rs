@@ -139,12 +139,18 @@ fn along_overlap(
         }
         LeastDeep::OfOwner(k) => {
             let normal = -other.frame.unturned(&owner.frame.turned(&owner.normals[k]));
-            // The corner of the other core that is deepest in that side.
-            let (deepest, height) = (0..other.corners.len())
-                .map(|corner| (corner, normal.dot(&other.corners[corner])))
-                .max_by(|a, b| a.1.total_cmp(&b.1))?;
+            // What of the other core is over the corner along that normal.
+            let n = other.corners.len();
+            let crossed = (0..n).filter_map(|side| {
+                let (start, end) = (other.corners[side], other.corners[(side + 1) % n]);
+                let along = end - start;
+                let across = normal.perp(&along);
+                let share = normal.perp(&(place - start)) / across;
+                (0.0..=1.0).contains(&share).then(|| (side, normal.dot(&(start + along * share))))
+            });
+            let (side, height) = crossed.max_by(|a, b| a.1.total_cmp(&b.1))?;
             let distance = normal.dot(place) - height;
-            Some(Nearest { foot: place - normal * distance, normal, distance, on: On::Corner(deepest) })
+            Some(Nearest { foot: place - normal * distance, normal, distance, on: On::Side(side) })
         }
     }
 }

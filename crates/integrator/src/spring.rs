@@ -161,8 +161,8 @@ pub(crate) struct Springs<const D: usize> {
     touched: Vec<(ContactId, f64)>,
     /// Those that take over the spring of a contact which has ended, with the gaps that they start from, in order of identity.
     heirs: Vec<(ContactId, f64)>,
-    /// Those whose springs were taken over.
-    taken: Vec<ContactId>,
+    /// Those of which it is known what they do: memory of a search.
+    settled: Vec<ContactId>,
     /// Those that take no part.
     left_out: Vec<ContactId>,
     /// Memory for contacts to look for.
@@ -181,8 +181,8 @@ impl<const D: usize> Springs<D> {
         self.touched.reserve(contacts);
         self.ids.reserve(contacts);
         self.heirs.reserve(contacts);
-        self.taken.reserve(contacts);
-        self.left_out.reserve(contacts);
+        self.settled.reserve(2 * contacts);
+        self.left_out.reserve(2 * contacts);
         self.located.reserve(contacts);
         self.rooms.reserve(contacts);
     }
@@ -197,8 +197,8 @@ impl<const D: usize> Springs<D> {
     /// Finds which of the step's contacts, `present` in order of identity, take over the spring of one that has ended: where a disc rolls
     /// over a point of a profile or on to the next beam, or a corner passes an edge, another contact goes on at the depth that the first has
     /// reached, and holds the energy that it held. Both are followed to the start of the step, past their ends. One that is inside there
-    /// already, but not over its surface yet, waits while the one before it is present; one that is past its end there has ended, which is
-    /// looked for where there is something new, or `some_past`.
+    /// already, but not over its surface yet, waits while the one before it is present. `some_past`: contacts may be followed past their
+    /// ends; those that are past them at the start of the step have ended.
     pub(crate) fn hand_over(
         &mut self,
         model: &Model<D>,
@@ -222,36 +222,51 @@ impl<const D: usize> Springs<D> {
         }
         self.ids.sort_unstable();
         work.locate_past_ends(model, &state.q, &self.ids, &mut self.located, &mut self.rooms)?;
-        let is_present = |id: ContactId| present.clone().any(|(other, _)| other == id);
-        for (pressed, _) in self.located.iter().zip(&self.rooms).filter(|(_, room)| **room < 0.0) {
-            if depth_of(pressed.id).is_some() {
+        for (pressed, room) in self.located.iter().zip(&self.rooms).filter(|_| some_past) {
+            if *room < 0.0 && depth_of(pressed.id).is_some() {
                 self.left_out.push(pressed.id);
             }
         }
-        for k in 0..self.located.len() {
-            let heir = self.located[k];
-            if depth_of(heir.id).is_some() || heir.gap >= 0.0 {
-                continue;
+        // The nearest two first, so that a spring goes to the contact at its place.
+        loop {
+            let mut nearest: Option<(usize, usize, f64)> = None;
+            for (k, heir) in self.located.iter().enumerate() {
+                let is_new = depth_of(heir.id).is_none() && heir.gap < 0.0 && spring_of(heir.law).is_some();
+                if !is_new || self.settled.contains(&heir.id) {
+                    continue;
+                }
+                for (j, before) in self.located.iter().enumerate() {
+                    let Some(depth) = depth_of(before.id).filter(|_| !self.settled.contains(&before.id)) else {
+                        continue;
+                    };
+                    let Some(apart) = apart(&heir.sides, &before.sides) else { continue };
+                    if -heir.gap >= AS_DEEP * depth && nearest.is_none_or(|(.., known)| apart < known) {
+                        nearest = Some((k, j, apart));
+                    }
+                }
             }
-            let pressed = self.located.iter().filter_map(|pressed| {
-                let (depth, apart) = (depth_of(pressed.id)?, apart(&heir.sides, &pressed.sides)?);
-                (-heir.gap >= AS_DEEP * depth).then_some((pressed, depth, apart))
-            });
-            let Some((before, depth, _)) = pressed.min_by(|(.., a), (.., b)| a.total_cmp(b)) else { continue };
-            if is_present(before.id) && !self.left_out.contains(&before.id) {
+            let Some((k, j, _)) = nearest else { break };
+            let (heir, before) = (self.located[k], self.located[j]);
+            self.settled.push(heir.id);
+            let is_present = present.clone().any(|(id, _)| id == before.id);
+            if is_present && self.rooms[j] >= 0.0 {
                 if self.rooms[k] < 0.0 {
                     self.left_out.push(heir.id);
                 }
-            } else if let (false, Some(spring)) = (self.taken.contains(&before.id), spring_of(heir.law)) {
+                continue;
+            }
+            self.settled.push(before.id);
+            if let (Some(spring), Some(depth)) = (spring_of(heir.law), depth_of(before.id)) {
                 let depth = match spring_of(before.law) {
                     Some(other) if other != spring => spring.depth_of(other.potential(-depth)),
                     _ => depth,
                 };
                 self.heirs.push((heir.id, -depth));
-                self.taken.push(before.id);
+                self.left_out.push(before.id);
             }
         }
-        self.taken.clear();
+        self.heirs.sort_unstable_by_key(|(id, _)| *id);
+        self.settled.clear();
         Ok(())
     }
 

@@ -1,9 +1,13 @@
 //! Contacts whose forces equilibrium alone doesn't decide: rigid bodies then bear one of many sets of forces, the one that the solver comes to.
 //!
-//! Of bodies that touch each other directly or by others, each has three equations. A pair leaves three unknowns if two of its points press, or one does
-//! and sides lie flat on each other, so that others could; else two;
-//! more unknowns than equations, and only the sum over some of the contacts follows from them. Of more than two points of one pair, only their resultant
-//! does. Contacts with duration have springs, whose forces follow from the motion: they leave no such choice.
+//! Of bodies that touch each other directly or by others, each has three equations. The unknowns of a pair:
+//!
+//! - its normal forces: one if one of its points presses, two if more do, or if sides lie flat on each other, so that others could;
+//! - one tangential force, if the pair has friction and a point sticks. Where all slide, friction follows from the normal forces.
+//!
+//! With more unknowns than equations only sums over some of the contacts follow. Of more than two points of one pair only the
+//! resultant does, but for those on a beam, which bends as they press. Contacts with duration have springs, whose forces follow from
+//! the motion: they leave no such choice.
 
 use super::curves::{Curves, ForceCurve};
 use super::outline::Outline;
@@ -23,16 +27,22 @@ pub(super) fn redundant(recorder: &PageRecorder, curves: &Curves, forces: &[Opti
     let contacts = &recorder.scenery.contacts;
     let buckets = forces.iter().flatten().map(|forces| forces.state.len()).max().unwrap_or(0);
     let Some(last) = buckets.checked_sub(1) else { return vec![[false; 2]; contacts.len()] };
-    let pressing = |contact: &ContactDrawn, bucket: usize| {
+    let states = |contact: &ContactDrawn, bucket: usize| {
         let own = forces[contact.first..contact.first + contact.points.len()].iter().flatten();
-        own.filter(|forces| forces.state.get(bucket).is_some_and(|state| *state != ContactState::Open)).count()
+        own.filter_map(move |forces| forces.state.get(bucket).copied()).collect::<Vec<_>>()
     };
     let looks: Vec<Vec<bool>> = (1..=LOOKS.min(buckets))
         .map(|look| look * last / LOOKS.min(buckets))
         .map(|bucket| {
-            let points: Vec<usize> = contacts.iter().map(|contact| pressing(contact, bucket)).collect();
+            let states: Vec<Vec<ContactState>> = contacts.iter().map(|contact| states(contact, bucket)).collect();
+            let pressing = |of: &Vec<ContactState>| of.iter().filter(|state| **state != ContactState::Open).count();
+            let points: Vec<usize> = states.iter().map(pressing).collect();
+            let sticks = |(contact, of): (&ContactDrawn, &Vec<ContactState>)| {
+                contact.has_friction && of.contains(&ContactState::Stick)
+            };
+            let stick: Vec<bool> = contacts.iter().zip(&states).map(sticks).collect();
             let flat = flat(recorder, borders.get(bucket + 1).copied().unwrap_or(f64::INFINITY), &points);
-            at(recorder, &points, &flat)
+            at(recorder, &points, &flat, &stick)
         })
         .collect();
     let at_end = |contact: usize| looks.last().is_some_and(|look| look[contact]);
@@ -65,14 +75,14 @@ fn flat(recorder: &PageRecorder, t: f64, pressing: &[usize]) -> Vec<bool> {
     contacts.iter().zip(pressing).map(of).collect()
 }
 
-/// The same at one time, with how many points of each contact press, and whether its sides lie flat on each other.
-fn at(recorder: &PageRecorder, pressing: &[usize], flat: &[bool]) -> Vec<bool> {
+/// The same at one time, with how many points of each contact press, whether its sides lie flat on each other, and whether one sticks.
+fn at(recorder: &PageRecorder, pressing: &[usize], flat: &[bool], stick: &[bool]) -> Vec<bool> {
     let (blocks, contacts) = (&recorder.scenery.blocks, &recorder.scenery.contacts);
     // The bodies of each group of touching ones have one number.
     let mut group: Vec<usize> = (0..blocks.len()).collect();
     let free = |block: usize| Some(block).filter(|block| !blocks[*block].driven);
     let rigid = |contact: &ContactDrawn| [free(contact.block), contact.other.and_then(free)];
-    let all = || contacts.iter().zip(pressing).zip(flat);
+    let all = || contacts.iter().zip(pressing).zip(flat.iter().zip(stick));
     let touching = || all().filter(|((contact, points), _)| **points > 0 && !contact.has_duration);
     for ((contact, _), _) in touching() {
         if let [Some(a), Some(b)] = rigid(contact) {
@@ -83,14 +93,14 @@ fn at(recorder: &PageRecorder, pressing: &[usize], flat: &[bool]) -> Vec<bool> {
     let mut surplus: Vec<isize> = vec![0; blocks.len()];
     (0..blocks.len()).filter_map(free).for_each(|block| surplus[group[block]] -= 3);
     let of = |contact: &ContactDrawn| rigid(contact).into_iter().flatten().next().map(|block| group[block]);
-    for ((contact, points), flat) in touching() {
+    for ((contact, points), (flat, stick)) in touching() {
         if let Some(group) = of(contact) {
-            surplus[group] += if *points > 1 || *flat { 3 } else { 2 };
+            surplus[group] += if *points > 1 || *flat { 2 } else { 1 } + isize::from(*stick);
         }
     }
     let one = |(contact, points): (&ContactDrawn, &usize)| {
         let pressed = *points > 0 && !contact.has_duration;
-        pressed && of(contact).is_some_and(|group| *points > 2 || surplus[group] > 0)
+        pressed && of(contact).is_some_and(|group| (*points > 2 && contact.beam.is_none()) || surplus[group] > 0)
     };
     contacts.iter().zip(pressing).map(one).collect()
 }

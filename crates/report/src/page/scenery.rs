@@ -81,6 +81,9 @@ pub(crate) struct ContactDrawn {
     /// Whether its law has springs, whose forces follow from the motion.
     #[serde(skip)]
     pub(crate) has_duration: bool,
+    /// Whether it has friction.
+    #[serde(skip)]
+    pub(crate) has_friction: bool,
     /// The number of its first point among those of all contacts.
     #[serde(skip)]
     pub(crate) first: usize,
@@ -279,6 +282,7 @@ impl Scenery {
                     teeter_integrator::ImpactLaw::KelvinVoigt { .. }
                         | teeter_integrator::ImpactLaw::HuntCrossley { .. }
                 ),
+                has_friction: contact.law.friction > 0.0,
                 first,
             }
         });

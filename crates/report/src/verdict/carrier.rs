@@ -53,12 +53,52 @@ enum Floor {
     },
 }
 
+/// What moves as prescribed below a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Driven {
+    Ground,
+    Supports,
+    Block,
+}
+
+/// What a block is placed on, or what is below it.
+fn support(scene: &Scene, block: usize) -> Option<SupportingBody> {
+    match scene.blocks[block].placement {
+        Placement::On { support, .. } => Some(support),
+        Placement::Free { .. } => under(scene, block),
+    }
+}
+
+/// What moves as prescribed below a block, directly or below other blocks; `None` where nothing does.
+pub(super) fn driven_below(scene: &Scene, number: usize) -> Option<Driven> {
+    let ground = || scene.ground.as_ref().filter(|ground| ground.motion.is_given()).map(|_| Driven::Ground);
+    let mut block = number;
+    // At most as many storeys as there are blocks.
+    for _ in 0..scene.blocks.len() {
+        match support(scene, block) {
+            Some(SupportingBody::Block(below)) => {
+                let motion = &scene.blocks[below].motion;
+                if motion.is_given() {
+                    // Of a fixed block it is zero.
+                    let moves = motion.0.iter().flatten().any(|axis| axis.amplitude != 0.0);
+                    return moves.then_some(Driven::Block);
+                }
+                block = below;
+            }
+            Some(SupportingBody::Beam(beam)) => {
+                return scene.beams[beam].motion.is_given().then_some(Driven::Supports);
+            }
+            Some(SupportingBody::Ground) => return ground(),
+            // In a crowd, or alone.
+            None => return if scene.beams.is_empty() { ground() } else { None },
+        }
+    }
+    None
+}
+
 impl Carrier {
     pub(super) fn of(scene: &Scene, layout: &Layout, number: usize) -> Self {
-        let support = |block: usize| match scene.blocks[block].placement {
-            Placement::On { support, .. } => Some(support),
-            Placement::Free { .. } => under(scene, block),
-        };
+        let support = |block: usize| support(scene, block);
         let of = |support: Option<SupportingBody>| match support {
             Some(SupportingBody::Beam(beam)) => On::Beam(beam, scene.beams[beam].position),
             Some(SupportingBody::Block(block)) => On::Block(layout.blocks[block].range.clone()),

@@ -15,9 +15,9 @@ pub(crate) enum Going {
     Flies,
     /// It is in the air after a landing, or was so a short time ago.
     Bounces,
-    /// A round one turns about as fast as it goes.
+    /// A round one turns about as fast as it goes, in the sense of its way.
     Rolls,
-    /// A round one goes without turning as fast.
+    /// A round one goes without turning so.
     Slides,
 }
 
@@ -95,13 +95,18 @@ impl Seen {
         if !watched.is_round {
             return None;
         }
-        Some(if 2.0 * watched.reach * spin.abs() >= vx.hypot(vy) { Going::Rolls } else { Going::Slides })
+        // The point that touches moves at less than half the centre's speed: what turns backwards, or on the spot, slides. On walls
+        // either sense may be right.
+        let speed = vx.hypot(vy);
+        let along = if vx.abs() > vy.abs() { vx.signum() } else { -spin.signum() };
+        let foot = speed * along + watched.reach * spin;
+        Some(if foot.abs() <= 0.5 * speed { Going::Rolls } else { Going::Slides })
     }
 
     /// The farthest that it was from where it stood, if it has slid back by more than `least` (m) from there to where it is, `slid` (m).
     pub(super) fn farthest(&self, slid: f64, least: f64) -> Option<f64> {
         let back = |reached: &f64| (reached - slid).abs();
         let farther = self.reached.into_iter().filter(|reached| reached.abs() > least && back(reached) > least);
-        farther.max_by(|a, b| back(a).total_cmp(&back(b)))
+        farther.max_by(|a, b| a.abs().total_cmp(&b.abs()))
     }
 }

@@ -1,5 +1,6 @@
 //! What became of a scene, in a sentence.
 
+use super::carrier::{Driven, driven_below};
 use super::{BodyVerdict, Fate, Going, Side};
 use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
@@ -125,9 +126,9 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         Fate::Fell => format!("fell from its place{at}{then_rested}"),
         Fate::Rests if of.t == Some(0.0) => {
             let how = if side.is_empty() { "stood" } else { "lay" };
-            let on = if side.is_empty() { moving_base(scene) } else { "" };
+            let on = moving_base(scene, &[of]);
             let still = if on.is_empty() { " still" } else { "" };
-            beside(format!("{how}{still}{on}{side} throughout"))
+            beside(format!("{how}{still}{side}{on} throughout"))
         }
         Fate::Rests => beside(format!("came to rest{side}{at}")),
         Fate::Slid if of.rests_from.is_some() => beside(format!("{slid} and came to rest{side}{at}")),
@@ -185,15 +186,17 @@ fn still(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
 }
 
 /// On what blocks rest, in words, where that moves by itself: to an onlooker they move with it.
-fn moving_base(scene: &Scene) -> &'static str {
-    let moves = |given: bool| given.then_some(());
-    let ground = scene.ground.as_ref().and_then(|ground| moves(ground.motion.is_given()));
-    let supports = || moves(scene.beams.iter().any(|beam| beam.motion.is_given()));
-    let blocks = || moves(scene.blocks.iter().any(|block| block.motion.is_given()));
-    match (ground, supports(), blocks()) {
-        (Some(()), ..) => " on the moving ground",
-        (None, Some(()), _) | (None, None, Some(())) => " on what moves under it",
-        (None, None, None) => "",
+fn moving_base(scene: &Scene, bodies: &[&BodyVerdict]) -> &'static str {
+    let below = |of: &&BodyVerdict| {
+        let number = scene.blocks.iter().position(|block| block.name == of.body)?;
+        driven_below(scene, number)
+    };
+    let driven: Vec<Option<Driven>> = bodies.iter().map(below).collect();
+    match driven.as_slice() {
+        all if all.iter().all(Option::is_none) => "",
+        all if all.iter().all(|below| *below == Some(Driven::Ground)) => " on the moving ground",
+        [_] => " on what moves under it",
+        _ => " on what moves under them",
     }
 }
 
@@ -233,11 +236,13 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
         let which = if first.is_empty() { String::new() } else { format!(", {first} `{}`{way}{when}", earliest.body) };
         parts.push(format!("{count}{of_all}{blocks} {what}{which}"));
     };
-    let collapsed = verdict.iter().any(|of| of.what == Fate::Fell);
+    let fell = of(&[Fate::Fell]);
+    let collapsed = !fell.is_empty() && of(&[Fate::Fell, Fate::Overturned]).len() > 1;
     if collapsed {
         tell(&of(&[Fate::Fell, Fate::Overturned]), "fell or overturned", "first");
     } else {
         tell(&of(&[Fate::Overturned]), "overturned", "first");
+        tell(&fell, "fell from its place", "first");
     }
     tell(&of(&[Fate::Left]), "left their beam", "first");
     tell(&of(&[Fate::Sunk]), "fell below everything", "first");
@@ -253,7 +258,7 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
         let told = told.collect::<Vec<_>>().join(", ");
         let how = if told.is_empty() { told } else { format!(" ({told})") };
         let what = if last == 0.0 {
-            match moving_base(scene) {
+            match moving_base(scene, &resting) {
                 "" => "stood still throughout".to_owned(),
                 on => format!("stood{on} throughout"),
             }
@@ -286,10 +291,10 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
     let of_all = parts.len() == 1 && others().all(|part| part.is_some());
     let mut text = parts.join("; ");
     if largest >= super::ROCKED {
-        let whose = match (of_all, collapsed) {
-            (true, _) => "all",
-            (false, true) => "those that neither fell nor overturned",
-            (false, false) => "those that didn't overturn",
+        let whose = match of_all {
+            true => "all",
+            false if fell.is_empty() => "those that didn't overturn",
+            false => "those that neither fell nor overturned",
         };
         text.push_str(&format!("; largest φ/α of {whose} {}", part(largest)));
     }

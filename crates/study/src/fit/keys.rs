@@ -27,6 +27,7 @@ impl FitKey {
     /// use teeter_study::fit::FitKey;
     /// assert_eq!(FitKey::read("beam.table.thickness=1..2 mm").unwrap().text(1.5), "1.5 mm");
     /// assert!(FitKey::read("contact.feet.restitution=0.8..0").is_err());
+    /// assert!(FitKey::read("time.step=1..5 ms").is_err());
     /// ```
     pub fn read(text: &str) -> Result<Self, String> {
         const EXAMPLE: &str =
@@ -35,6 +36,11 @@ impl FitKey {
         let Some((key, (low, high))) = parts.filter(|(key, _)| !key.is_empty()) else {
             return Err(format!("{EXAMPLE}; files come before --vary"));
         };
+        if ["output.", "time.", "solver."].iter().any(|table| key.starts_with(table)) {
+            return Err(format!(
+                "{key} is no property of what was measured: vary keys of blocks, contacts, beams or loads"
+            ));
+        }
         let number = |text: &str| {
             WrittenNumber::read(text)
                 .ok_or_else(|| format!("`{}` is not a number with its unit; {EXAMPLE}", text.trim()))

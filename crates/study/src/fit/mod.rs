@@ -171,8 +171,11 @@ impl Fit {
         if settings.samples.is_some() || !first.is_misfit() {
             return Ok(first);
         }
-        let second = once(&FitSettings { samples: Some(MORE * samples(keys)), ..settings.clone() })?;
-        let (mut better, other) = if second.misfit < first.misfit { (second, first) } else { (first, second) };
+        let more = FitSettings { samples: Some(MORE * samples(keys)), ..settings.clone() };
+        // Interrupted, or without a better end, the first fit stands.
+        let Ok(second) = once(&more) else { return Ok(first) };
+        let better = second.until >= (1.0 - SAME_HORIZON) * first.until && second.cost < first.cost;
+        let (mut better, other) = if better { (second, first) } else { (first, second) };
         better.evaluations.extend(other.evaluations);
         Ok(better)
     }

@@ -112,7 +112,6 @@ fn spaced(unit: &str) -> String {
     if unit.is_empty() { String::new() } else { format!(" {unit}") }
 }
 
-/// Whether what is left is too much for noise.
 /// Values outside the intervals at which other starts ended, with hardly more left.
 fn hardly_worse(fit: &Fit) -> impl Iterator<Item = &(Vec<f64>, f64)> {
     let outside = |values: &[f64]| {

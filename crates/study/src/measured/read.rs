@@ -372,7 +372,7 @@ impl Columns<'_> {
         let factor = |unit: &str| quantity::parse(&format!("1 {unit}"), dimension);
         if let (Some(given), Some(heading)) = (spec.unit.as_deref(), heading)
             && let (Ok(by_spec), Ok(by_heading)) = (factor(given), factor(heading))
-            && by_spec != by_heading
+            && (by_spec - by_heading).abs() > 1e-12 * by_heading.abs()
         {
             return Err(MeasuredError::Columns(format!(
                 "the unit `{}` of {what} contradicts its heading, which says `{}`: leave the unit out, or correct the heading",
@@ -433,33 +433,34 @@ impl Columns<'_> {
         MeasuredError::Columns(format!("no column `{}` for {what}: {there}{near}", printable(name)))
     }
 
-    /// Refuses to take rows for consecutive frames where a column counts frames and skips some.
+    /// Refuses to take rows as equally spaced where a column counts frames and skips some.
     fn refuse_lost_frames(&self) -> Result<(), MeasuredError> {
-        let counts = ["frame", "sample", "index"];
-        let named =
-            self.names.iter().position(|(name, _)| counts.iter().any(|word| name.to_lowercase().contains(word)));
-        let Some(place) = named else { return Ok(()) };
+        let counts = |name: &str| {
+            let mut words = name.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
+            words
+                .next()
+                .is_some_and(|word| ["frame", "frames", "sample", "index"].contains(&word.to_lowercase().as_str()))
+        };
+        let Some(place) = self.names.iter().position(|(name, _)| counts(name)) else { return Ok(()) };
         let value = |(line, cells): &(usize, Vec<String>)| {
             Some((*line, number(cells.get(place)?, self.table.decimal_comma).filter(|value| value.fract() == 0.0)?))
         };
         let frames: Option<Vec<(usize, f64)>> = self.table.rows.iter().map(value).collect();
         let Some(frames) = frames else { return Ok(()) };
-        let skips = frames.windows(2).find(|pair| pair[1].1 > pair[0].1 + 1.0);
-        let rises = frames.windows(2).all(|pair| pair[1].1 > pair[0].1);
-        match skips.filter(|_| rises) {
-            None => Ok(()),
-            Some(pair) => {
-                let name = printable(&self.names[place].0);
-                Err(MeasuredError::line(
-                    pair[1].0,
-                    format!(
-                        "the column `{name}` goes from {} to {}, so that rows aren't consecutive frames: count by it, --column \
-                         t=\"{name}\"",
-                        pair[0].1, pair[1].1
-                    ),
-                ))
-            }
-        }
+        let strides = || frames.windows(2).map(|pair| pair[1].1 - pair[0].1);
+        let least = strides().fold(f64::INFINITY, f64::min);
+        // Every tenth frame is as regular as every one.
+        let Some(lost) = strides().position(|stride| stride > least).filter(|_| least > 0.0) else { return Ok(()) };
+        let name = printable(&self.names[place].0);
+        Err(MeasuredError::line(
+            frames[lost + 1].0,
+            format!(
+                "the column `{name}` goes from {} to {}, elsewhere by {least}, so that rows aren't equally spaced: count by it, --column \
+                 t=\"{name}\", with the rate of its frames",
+                frames[lost].1,
+                frames[lost + 1].1
+            ),
+        ))
     }
 
     fn times(&self, layout: &ColumnLayout, block: &str) -> Result<Vec<f64>, MeasuredError> {

@@ -18,6 +18,8 @@ const MOST_LISTED: usize = 20;
 
 /// What a run of a case offers to outputs.
 struct Offered {
+    /// End of the run, s.
+    end: f64,
     columns: Vec<String>,
     summary: Summary,
 }
@@ -67,8 +69,32 @@ impl Sweep {
         let tables = entries(root.get_ref());
         let written = tables.iter().find(|(name, _)| *name == "outputs").and_then(|(_, node)| node.table());
         let places: Vec<(&str, Node<'_, '_>)> = written.map(entries).unwrap_or_default();
+        let of_bands = |output: &Output| {
+            let bands = self.wanted().bands.as_ref();
+            bands.is_some_and(|bands| bands.outputs().any(|of_bands| of_bands == *output))
+        };
+        let varies = |key: &str| self.case(0).iter().any(|(varied, _)| varied == key);
+        let past_end = |output: &Output| {
+            let end = offered.iter().map(|offered| offered.end).fold(0.0, f64::max);
+            let t = output.time().filter(|t| !offered.is_empty() && !varies("time.end") && *t > end * (1.0 + 1e-12))?;
+            Some(Missing { rule: format!("t = {t} s is after the end of the runs, t = {end} s"), meant: None })
+        };
         for output in self.outputs() {
-            let Some(Missing { rule, meant }) = missing(output, &offered) else { continue };
+            let Some(Missing { rule, meant }) = missing(output, &offered).or_else(|| past_end(output)) else {
+                continue;
+            };
+            if of_bands(output) {
+                // One is wrong as the others are.
+                if !reader.found.0.iter().any(|finding| finding.path == "bands") {
+                    let table = tables.iter().find(|(name, _)| *name == "bands").map(|(_, node)| node);
+                    let remedy = "take a column of the trajectory.csv of one case, up to a time before its end";
+                    reader.wrong("bands", table, &rule, remedy);
+                    if let Some(finding) = reader.found.0.last_mut() {
+                        finding.did_you_mean = meant;
+                    }
+                }
+                continue;
+            }
             let place = places.iter().find(|(name, _)| *name == output.name()).map(|(_, node)| node);
             let remedy = "run one case with `teeter run`, and take a number of its summary.json or a column of its \
                 trajectory.csv";
@@ -91,7 +117,7 @@ impl Sweep {
         let record = recorder.into_record();
         let (layout, state) = (&simulation.layout, &simulation.state);
         let summary = Summary::without_records(&scene, layout, state, &record, EndedWord::Complete, 0.0);
-        Some(Offered { columns, summary })
+        Some(Offered { end: scene.time.end, columns, summary })
     }
 }
 

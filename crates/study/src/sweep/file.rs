@@ -28,8 +28,8 @@ pub struct Sweep {
     outputs: Vec<Output>,
 }
 
-const TABLES: [&str; 9] =
-    ["scene", "grid", "zip", "random", "find", "outputs", "fragility", "distribution", "overturning"];
+const TABLES: [&str; 10] =
+    ["scene", "grid", "zip", "random", "find", "outputs", "fragility", "distribution", "overturning", "bands"];
 
 /// What is given if a sweep file asks for nothing.
 const DEFAULT_OUTPUTS: [&str; 4] = ["t", "impact_count", "energy.final", "energy.largest_residual"];

@@ -84,7 +84,7 @@ impl Find {
             return None;
         }
         if tolerance.value >= high.value - low.value {
-            let rule = "must be less than the distance of low and high: nothing would be looked for";
+            let rule = "must be less than high - low, or there is nothing to search";
             reader.wrong("find.tolerance", Some(node), rule, EXAMPLE);
             return None;
         }

@@ -110,6 +110,11 @@ impl Output {
         Self { name: path.to_owned(), origin: Origin::Summary(path.to_owned()) }
     }
 
+    /// The value of a column at a time, s.
+    pub(crate) fn at(name: String, column: &str, t: f64) -> Self {
+        Self { name, origin: Origin::Column { name: column.to_owned(), reduction: Reduction::At(t) } }
+    }
+
     /// Reads `name = "path.in.summary"` or `name = { max = "column" }`.
     pub(crate) fn read(reader: &mut Reader<'_>, name: &str, node: &Node<'_, '_>) -> Option<Self> {
         let path = format!("outputs.{name}");

@@ -98,8 +98,7 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
     let mismatch = mismatch(comparison);
     if mismatch > UNLIKE {
         texts.push(format!(
-            "the motions hardly match: with the best alignment their mean square difference is {} of what unrelated motions \
-             have",
+            "the motions hardly match: their mean square difference is {} of what unrelated motions have",
             percent(mismatch)
         ));
     }
@@ -118,12 +117,15 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
 const UNLIKE: f64 = 0.1;
 
 /// The mean square difference as a share of that of unrelated motions: of the rows by which the motions were aligned or, if that is more,
-/// of those that are compared. A block that is held for long before its release matches there whatever it does later.
+/// of those that are compared, from the release to the horizon. A block that is held for long before its release matches there whatever it
+/// does later.
 fn mismatch(comparison: &Comparison) -> f64 {
     let aligned = comparison.alignment.mismatch;
     let Some(found) = comparison.channels.iter().find(|found| found.is_measured) else { return aligned };
     let pairs = || {
-        let both = found.measured.value.iter().copied().zip(found.simulated.value.iter().copied());
+        let rows = comparison.rows.clone();
+        let of = |values: &[f64]| values.get(rows.clone()).unwrap_or_default().to_vec();
+        let both = of(&found.measured.value).into_iter().zip(of(&found.simulated.value));
         both.filter(|(measured, simulated)| measured.is_finite() && simulated.is_finite())
     };
     let n = pairs().count() as f64;

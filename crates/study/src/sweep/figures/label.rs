@@ -54,6 +54,19 @@ pub(super) fn label(sweep: &Sweep, column: &str) -> String {
     output.and_then(of_output).unwrap_or_else(|| column.to_owned())
 }
 
+/// The label of a column of `trajectory.csv`.
+pub(super) fn quantity(column: &str) -> String {
+    let known = || {
+        let (owner, last) = column.rsplit_once('.')?;
+        Some(format!("{} of {owner}", named(&SYMBOLS, last)?))
+    };
+    let name = known().unwrap_or_else(|| column.to_owned());
+    match teeter_report::column_unit("trajectory.csv", column) {
+        Some(unit) => format!("{name} ({})", typeset(unit)),
+        None => name,
+    }
+}
+
 /// The label that studies have in common: where they differ only in what it belongs to, as the ground and the supports of a
 /// beam that are shaken, without that; else the first.
 pub(super) fn common(labels: &[String]) -> String {

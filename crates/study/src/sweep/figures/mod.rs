@@ -1,6 +1,7 @@
-//! What a sweep file asks to be made of its table: fragility curves, distributions, maps of
+//! What a sweep file asks to be made of its table: fragility curves, distributions, bands, maps of
 //! overturning. The same for several studies side by side.
 
+mod bands;
 mod distribution;
 mod fragility;
 mod label;
@@ -12,6 +13,7 @@ use super::Sweep;
 use super::output::Output;
 use super::spec::{Node, Reader};
 use crate::write::typeset;
+pub(crate) use bands::Bands;
 pub(crate) use distribution::Distribution;
 pub(crate) use fragility::Fragility;
 pub(crate) use overturning::Overturning;
@@ -27,13 +29,14 @@ pub(crate) struct Wanted {
     pub(crate) fragility: Option<Fragility>,
     pub(crate) distribution: Option<Distribution>,
     pub(crate) overturning: Option<Overturning>,
+    pub(crate) bands: Option<Bands>,
 }
 
 /// The tables of a sweep file that ask for something.
-pub(crate) const TABLES: [&str; 3] = ["fragility", "distribution", "overturning"];
+pub(crate) const TABLES: [&str; 4] = ["fragility", "distribution", "overturning", "bands"];
 
 /// The files that they lead to.
-pub const FIGURE_FILES: [&str; 13] = [
+pub const FIGURE_FILES: [&str; 15] = [
     "study.html",
     "figures/fragility.svg",
     "figures/fragility-2.svg",
@@ -47,6 +50,8 @@ pub const FIGURE_FILES: [&str; 13] = [
     "distribution.csv",
     "distribution_tests.csv",
     "overturning.csv",
+    "figures/bands.svg",
+    "bands.csv",
 ];
 
 impl Wanted {
@@ -55,6 +60,7 @@ impl Wanted {
         match name {
             "fragility" => self.fragility = Fragility::read(reader, table, node),
             "distribution" => self.distribution = Distribution::read(reader, table, node),
+            "bands" => self.bands = Bands::read(reader, table, node),
             _ => self.overturning = Overturning::read(reader, table, node),
         }
     }
@@ -71,6 +77,10 @@ impl Wanted {
         }
         if let Some(of) = &self.overturning {
             of.event.claim(reader, "overturning.event", outputs);
+        }
+        if let Some(of) = &self.bands {
+            let new = of.outputs().filter(|output| !outputs.iter().any(|known| known.name() == output.name()));
+            outputs.extend(new.collect::<Vec<_>>());
         }
     }
 
@@ -132,7 +142,7 @@ const SHARE_ROOM: f64 = 0.03;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct StudyFigure {
-    /// `fragility`, `distribution` or `overturning`: the name of its file.
+    /// `fragility`, `distribution`, `bands` or `overturning`: the name of its file.
     pub name: &'static str,
     /// Its heading.
     pub title: String,
@@ -181,6 +191,9 @@ pub fn study_figures(studies: &[Ensemble]) -> Result<Vec<StudyFigure>, AxisError
     }
     if all(|wanted| wanted.distribution.is_some()) {
         figures.push(distribution::figure(studies)?);
+    }
+    if all(|wanted| wanted.bands.is_some()) {
+        figures.push(bands::figure(studies)?);
     }
     // Maps of several studies would hide each other.
     if let [study] = studies
