@@ -334,13 +334,19 @@ fn an_output_that_no_run_can_have_is_refused_before_the_first() {
 
 #[test]
 fn an_output_that_no_case_has_is_told() {
-    let sweep = format!(
-        "{SWEEP}nothing = \"peaks.90000.phi\"\nnowhere = {{ at = \"7 min\", of = \"rocker.phi\" }}\n\
-         work = \"energy.positive_contact_work.largest\"\n"
-    );
+    let sweep = format!("{SWEEP}nothing = \"peaks.90000.phi\"\nwork = \"energy.positive_contact_work.largest\"\n");
     let folder = study("empty", &sweep);
     let told = done(&folder, &["sweep", "sweep.toml", "--out", "out"]);
     assert!(told.contains("`nothing` is empty in all cases: summary.json has no value at peaks.90000.phi"), "{told}");
+    let late = format!("{SWEEP}nowhere = {{ at = \"7 min\", of = \"rocker.phi\" }}\n");
+    std::fs::write(folder.join("late.toml"), &late).unwrap();
+    let output = teeter(&folder, &["sweep", "late.toml", "--out", "late"]);
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.contains("outputs.nowhere: t = 420 s is after the end of the runs, t = 0.2 s"), "{told}");
+    // Where the end varies, some case may have it.
+    let ends = late.replace("[grid]\n", "[grid]\ntime.end = [\"0.1 s\", \"0.15 s\"]\n");
+    std::fs::write(folder.join("ends.toml"), ends).unwrap();
+    let told = done(&folder, &["sweep", "ends.toml", "--out", "ends"]);
     assert!(
         told.contains("`nowhere` is empty in all cases: trajectory.csv has no row at t = 420 s or later"),
         "{told}"

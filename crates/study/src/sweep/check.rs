@@ -96,8 +96,12 @@ impl Sweep {
                 continue;
             }
             let place = places.iter().find(|(name, _)| *name == output.name()).map(|(_, node)| node);
-            let remedy = "run one case with `teeter run`, and take a number of its summary.json or a column of its \
-                trajectory.csv";
+            let remedy = match missing(output, &offered) {
+                Some(_) => {
+                    "run one case with `teeter run`, and take a number of its summary.json or a column of its trajectory.csv"
+                }
+                None => "take a time up to there, or make the runs longer (`time.end`)",
+            };
             reader.wrong(&format!("outputs.{}", output.name()), place, &rule, remedy);
             if let Some(finding) = reader.found.0.last_mut() {
                 finding.did_you_mean = meant;
