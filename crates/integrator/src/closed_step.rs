@@ -386,9 +386,8 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         let past = self.goes_past_ends;
         let present =
             middle.iter().zip(&rooms).filter(|(_, room)| past || **room >= 0.0).map(|(candidate, _)| candidate);
-        let pairs = present.clone().map(|candidate| (candidate.id, candidate.law));
         let some_past = past && rooms.iter().any(|room| *room < 0.0);
-        let posed = self.stage.hand_springs_over(model, state, pairs, some_past, work).and_then(|()| {
+        let posed = self.stage.hand_springs_over(model, state, present.clone(), some_past, work).and_then(|()| {
             present.into_iter().try_for_each(|candidate| match self.stage.is_left_out(candidate.id) {
                 true => Ok(()),
                 false => self.pose(model, state, span.h, work, candidate),
@@ -500,7 +499,11 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         work.locate(model, &state.q, &self.new, &mut self.start)?;
         for id in &self.new {
             let gap = |candidates: &[Candidate<D>]| find(candidates, *id).map_or(0.0, |candidate| candidate.gap);
-            if gap(&work.candidates) < gap(&self.start).min(0.0) - SINKING * self.gap_tolerance {
+            // A spring may have to go on as it rebounds.
+            let law = find(&work.candidates, *id).map(|candidate| candidate.law);
+            let springs = law.and_then(|law| model.law(law).ok()).is_some_and(|law| law.impact.spring().is_some());
+            let began = if springs { 0.0 } else { gap(&self.start).min(0.0) };
+            if gap(&work.candidates) < began - SINKING * self.gap_tolerance {
                 self.closed.push(*id);
             }
         }

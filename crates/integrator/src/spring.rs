@@ -19,7 +19,7 @@
 //! side of compression converges.
 
 use crate::{ImpactLaw, Memory, Mismatch, Model, State, Workspace};
-use teeter_detect::{Anchor, Candidate, Candidates, ContactId, LawId};
+use teeter_detect::{Anchor, Candidate, Candidates, ContactId};
 
 /// A contact's spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -199,11 +199,11 @@ impl<const D: usize> Springs<D> {
     /// reached, and holds the energy that it held. Both are followed to the start of the step, past their ends. One that is inside there
     /// already, but not over its surface yet, waits while the one before it is present. `some_past`: contacts may be followed past their
     /// ends; those that are past them at the start of the step have ended.
-    pub(crate) fn hand_over(
+    pub(crate) fn hand_over<'a>(
         &mut self,
         model: &Model<D>,
         state: &State,
-        present: impl Iterator<Item = (ContactId, LawId)> + Clone,
+        present: impl Iterator<Item = &'a Candidate<D>> + Clone,
         some_past: bool,
         work: &mut Workspace<D>,
     ) -> Result<(), Mismatch> {
@@ -211,10 +211,9 @@ impl<const D: usize> Springs<D> {
         self.left_out.clear();
         let depth_of = |id| state.memory.spring_gap(id).filter(|gap| *gap < 0.0).map(|gap| -gap);
         let spring_of = |law| model.law(law).ok().and_then(|law| law.impact.spring());
+        let is_new = |of: &&Candidate<D>| depth_of(of.id).is_none() && spring_of(of.law).is_some();
         self.ids.clear();
-        self.ids.extend(
-            present.clone().filter(|(id, law)| depth_of(*id).is_none() && spring_of(*law).is_some()).map(|(id, _)| id),
-        );
+        self.ids.extend(present.clone().filter(is_new).map(|of| of.id));
         let new = self.ids.len();
         self.ids.extend(state.memory.active().iter().filter(|id| depth_of(**id).is_some()));
         if (new == 0 && !some_past) || self.ids.len() == new {
@@ -222,17 +221,27 @@ impl<const D: usize> Springs<D> {
         }
         self.ids.sort_unstable();
         work.locate_past_ends(model, &state.q, &self.ids, &mut self.located, &mut self.rooms)?;
+        // A beam has no foot past its end: what comes over it within the step is known by where it is then.
+        for of in present.clone().filter(is_new) {
+            if !self.located.iter().any(|known| known.id == of.id) {
+                self.located.push(*of);
+                self.rooms.push(f64::NEG_INFINITY);
+            }
+        }
         for (pressed, room) in self.located.iter().zip(&self.rooms).filter(|_| some_past) {
             if *room < 0.0 && depth_of(pressed.id).is_some() {
                 self.left_out.push(pressed.id);
             }
         }
-        // The nearest two first, so that a spring goes to the contact at its place.
+        // Those that have ended before those that are present, and the nearest two first, so that a spring goes to the contact at its place.
+        let is_present = |before: &Candidate<D>, room: f64| {
+            let here = present.clone().any(|of| of.id == before.id);
+            here && room >= 0.0
+        };
         loop {
-            let mut nearest: Option<(usize, usize, f64)> = None;
+            let mut nearest: Option<(usize, usize, (bool, f64))> = None;
             for (k, heir) in self.located.iter().enumerate() {
-                let is_new = depth_of(heir.id).is_none() && heir.gap < 0.0 && spring_of(heir.law).is_some();
-                if !is_new || self.settled.contains(&heir.id) {
+                if !is_new(&heir) || heir.gap >= 0.0 || self.settled.contains(&heir.id) {
                     continue;
                 }
                 for (j, before) in self.located.iter().enumerate() {
@@ -240,16 +249,16 @@ impl<const D: usize> Springs<D> {
                         continue;
                     };
                     let Some(apart) = apart(&heir.sides, &before.sides) else { continue };
-                    if -heir.gap >= AS_DEEP * depth && nearest.is_none_or(|(.., known)| apart < known) {
-                        nearest = Some((k, j, apart));
+                    let order = (is_present(before, self.rooms[j]), apart);
+                    if -heir.gap >= AS_DEEP * depth && nearest.is_none_or(|(.., known)| order < known) {
+                        nearest = Some((k, j, order));
                     }
                 }
             }
-            let Some((k, j, _)) = nearest else { break };
+            let Some((k, j, (is_present, _))) = nearest else { break };
             let (heir, before) = (self.located[k], self.located[j]);
             self.settled.push(heir.id);
-            let is_present = present.clone().any(|(id, _)| id == before.id);
-            if is_present && self.rooms[j] >= 0.0 {
+            if is_present {
                 if self.rooms[k] < 0.0 {
                     self.left_out.push(heir.id);
                 }

@@ -17,7 +17,7 @@ pub(crate) use posed::Problem;
 pub(crate) use rows::ContactRows;
 pub(crate) use solve::Members;
 use teeter_contact::{Block, ProblemError};
-use teeter_detect::{BodyId, Candidate, ContactId, LawId};
+use teeter_detect::{BodyId, Candidate, ContactId};
 
 /// Why contacts can't be solved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -319,25 +319,24 @@ impl<const D: usize> ContactStage<D> {
             let spring = model.law(candidate.law).is_ok_and(|law| law.impact.spring().is_some());
             self.springs.admit(spring, candidate, &state.memory, look.within)
         });
-        let taken =
-            self.springs.hand_over(model, state, admitted.iter().map(|c| (c.id, c.law)), false, work).and_then(|()| {
-                let mut all = admitted.iter();
-                all.try_for_each(|candidate| match self.springs.leaves_out(candidate.id) {
-                    true => Ok(()),
-                    false => self.take_in(model, look.at, candidate, &state.warm, &state.memory).map(|_| ()),
-                })
-            });
+        let taken = self.springs.hand_over(model, state, admitted.iter(), false, work).and_then(|()| {
+            let mut all = admitted.iter();
+            all.try_for_each(|candidate| match self.springs.leaves_out(candidate.id) {
+                true => Ok(()),
+                false => self.take_in(model, look.at, candidate, &state.warm, &state.memory).map(|_| ()),
+            })
+        });
         work.candidates = admitted;
         taken
     }
 
     /// Finds which springs of ended contacts the candidates `present`, in order of identity, take over, before they are posed. `some_past`:
     /// whether some may be past the end of their surface at the start of the step.
-    pub(crate) fn hand_springs_over(
+    pub(crate) fn hand_springs_over<'a>(
         &mut self,
         model: &Model<D>,
         state: &State,
-        present: impl Iterator<Item = (ContactId, LawId)> + Clone,
+        present: impl Iterator<Item = &'a Candidate<D>> + Clone,
         some_past: bool,
         work: &mut Workspace<D>,
     ) -> Result<(), Mismatch> {

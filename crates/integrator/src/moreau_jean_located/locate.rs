@@ -79,6 +79,10 @@ impl<const D: usize> MoreauJeanLocated<D> {
         let tolerance = self.tolerance(&from.q);
         loop {
             let outcome = self.step.attempt(model, from, rest, work)?;
+            if model.has_springs() && self.close_springs_within(model, from, tolerance, work)? {
+                work.counts.refused_attempts += 1;
+                continue;
+            }
             self.hits.clear();
             self.find_hits(model, from, tolerance, 0.0, work)?;
             if self.hits.is_empty() {
@@ -105,6 +109,30 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 return self.close_in(model, from, rest, tolerance, work);
             }
         }
+    }
+
+    /// Closes the springs that are inside at the start and at the end of the attempt: they may go on for others, whichever way they move.
+    /// Whether any are new.
+    fn close_springs_within(
+        &mut self,
+        model: &Model<D>,
+        from: &State,
+        tolerance: f64,
+        work: &mut Workspace<D>,
+    ) -> Result<bool, Mismatch> {
+        let closed = self.step.closed.len();
+        for k in 0..work.candidates.len() {
+            let Candidate { id, law, gap, .. } = work.candidates[k];
+            let Err(at) = self.step.closed.binary_search(&id) else { continue };
+            if gap >= -tolerance || model.law(law)?.impact.spring().is_none() {
+                continue;
+            }
+            work.locate(model, &from.q, &[id], &mut self.near)?;
+            if self.near.first().is_some_and(|start| start.gap < -tolerance) {
+                self.step.closed.insert(at, id);
+            }
+        }
+        Ok(self.step.closed.len() > closed)
     }
 
     /// Finds the time at which the first of the hits touches: Newton's method on the gap at the end
@@ -164,6 +192,13 @@ impl<const D: usize> MoreauJeanLocated<D> {
             let known = self.hits.iter().any(|hit| hit.id == id) || self.step.closed.binary_search(&id).is_ok();
             if candidate.gap >= -tolerance || known || (least > 0.0 && self.pressed_lately(id)) {
                 continue;
+            }
+            if model.law(candidate.law)?.impact.spring().is_some() {
+                // Inside beyond the end of its surface already, it goes on for another one from there on.
+                work.locate_past_ends(model, &from.q, &[id], &mut self.near, &mut self.rooms)?;
+                if self.near.first().is_some_and(|start| start.gap < -tolerance) {
+                    continue;
+                }
             }
             work.locate(model, &from.q, &[id], &mut self.near)?;
             // A whole tolerance in each of many short steps would let it sink by any depth.

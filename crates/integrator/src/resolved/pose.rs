@@ -35,7 +35,7 @@ impl<const D: usize> Resolved<D> {
         work.locate(model, &self.q_mid, &self.ids, &mut self.middle)?;
         work.locate(model, &self.step.q_at, &self.ids, &mut self.ahead)?;
         self.find_momentum(model, from);
-        self.stage.hand_springs_over(model, from, self.middle.iter().map(|c| (c.id, c.law)), false, work)?;
+        self.stage.hand_springs_over(model, from, self.middle.iter(), false, work)?;
         for k in 0..self.middle.len() {
             let candidate = self.middle[k];
             if self.stage.is_left_out(candidate.id) {
