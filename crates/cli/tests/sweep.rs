@@ -587,3 +587,14 @@ fn bands_are_quantiles_of_the_motions() {
         assert_eq!(error.matches("error: ").count(), 1, "{text}: {error}");
     }
 }
+
+#[test]
+fn whether_a_block_overturned_is_an_output() {
+    let sweep = "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\", \"14 deg\"]\ntime.end = [\"1 s\"]\n\
+        [outputs]\nover = \"overturned\"\n";
+    let folder = study("overturned", sweep);
+    done(&folder, &["sweep", "sweep.toml", "--out", "all"]);
+    let rows = table(&folder.join("all/results.csv"));
+    let place = rows[0].iter().position(|name| name == "over").unwrap();
+    assert_eq!([rows[1][place].as_str(), rows[2][place].as_str()], ["false", "true"]);
+}

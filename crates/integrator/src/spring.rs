@@ -175,6 +175,9 @@ pub(crate) struct Springs<const D: usize> {
 /// point goes over to another contact, the two depths are equal but for the way of a step.
 const AS_DEEP: f64 = 0.5;
 
+/// Contacts that are apart by less than this part of their depth act at one point.
+const ONE_POINT: f64 = 1e-2;
+
 impl<const D: usize> Springs<D> {
     /// Makes room for so many contacts.
     pub(crate) fn reserve(&mut self, contacts: usize) {
@@ -255,11 +258,12 @@ impl<const D: usize> Springs<D> {
                     }
                 }
             }
-            let Some((k, j, (is_present, _))) = nearest else { break };
+            let Some((k, j, (is_present, apart))) = nearest else { break };
             let (heir, before) = (self.located[k], self.located[j]);
             self.settled.push(heir.id);
             if is_present {
-                if self.rooms[k] < 0.0 {
+                // Surfaces that meet overlap by rounding: there both are over theirs, at one point.
+                if self.rooms[k] < 0.0 || apart <= ONE_POINT * -heir.gap {
                     self.left_out.push(heir.id);
                 }
                 continue;

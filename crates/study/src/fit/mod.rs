@@ -171,10 +171,13 @@ impl Fit {
         if settings.samples.is_some() || !first.is_misfit() {
             return Ok(first);
         }
-        let more = FitSettings { samples: Some(MORE * samples(keys)), ..settings.clone() };
+        let seed = settings.seed.wrapping_add(1);
+        let more = FitSettings { samples: Some(MORE * samples(keys)), seed, ..settings.clone() };
         // Interrupted, or without a better end, the first fit stands.
         let Ok(second) = once(&more) else { return Ok(first) };
-        let better = second.until >= (1.0 - SAME_HORIZON) * first.until && second.cost < first.cost;
+        // The right values may have a shorter horizon than wrong ones; of two that are wrong, the one that says less of the motion isn't better.
+        let comparable = second.until >= (1.0 - SAME_HORIZON) * first.until || !second.is_misfit();
+        let better = comparable && second.cost < first.cost;
         let (mut better, other) = if better { (second, first) } else { (first, second) };
         better.evaluations.extend(other.evaluations);
         Ok(better)

@@ -197,7 +197,7 @@ fn run_once(
     };
     let mut paths = sweep.outputs().iter().filter_map(Output::summary_path).peekable();
     // Columns need none.
-    let summary = if paths.peek().is_some() {
+    let summary = if paths.peek().is_some() || sweep.outputs().iter().any(Output::is_overturned) {
         let of_records = paths.any(|path| path.split('.').next() == Some("records"));
         let summary = if of_records { Summary::new } else { Summary::without_records };
         Some(summary(&scene, &layout, state, &record, word, 0.0))

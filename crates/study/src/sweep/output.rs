@@ -28,6 +28,8 @@ enum Origin {
     Summary(String),
     /// A column of `trajectory.csv`.
     Column { name: String, reduction: Reduction },
+    /// Whether any block has overturned.
+    Overturned,
     /// The spectral acceleration, for 5 % damping, of a record as used: that of a table of the scene,
     /// such as `ground.motion.x`, or the first.
     Spectral { period: f64, of: Option<String> },
@@ -54,7 +56,7 @@ impl Output {
     pub fn column(&self) -> Option<&str> {
         match &self.origin {
             Origin::Column { name, .. } => Some(name),
-            Origin::Summary(_) | Origin::Spectral { .. } => None,
+            Origin::Summary(_) | Origin::Spectral { .. } | Origin::Overturned => None,
         }
     }
 
@@ -72,8 +74,14 @@ impl Output {
     pub fn summary_path(&self) -> Option<&str> {
         match &self.origin {
             Origin::Summary(path) => Some(path),
-            Origin::Column { .. } | Origin::Spectral { .. } => None,
+            Origin::Column { .. } | Origin::Spectral { .. } | Origin::Overturned => None,
         }
+    }
+
+    /// Whether it says if a block has overturned.
+    #[must_use]
+    pub fn is_overturned(&self) -> bool {
+        self.origin == Origin::Overturned
     }
 
     /// The record whose spectral acceleration it is, if it is one; empty for the first.
@@ -81,7 +89,7 @@ impl Output {
     pub fn spectrum_of(&self) -> Option<&str> {
         match &self.origin {
             Origin::Spectral { of, .. } => Some(of.as_deref().unwrap_or_default()),
-            Origin::Summary(_) | Origin::Column { .. } => None,
+            Origin::Summary(_) | Origin::Column { .. } | Origin::Overturned => None,
         }
     }
 
@@ -89,7 +97,7 @@ impl Output {
     pub(crate) fn period(&self) -> Option<f64> {
         match &self.origin {
             Origin::Spectral { period, .. } => Some(*period),
-            Origin::Summary(_) | Origin::Column { .. } => None,
+            Origin::Summary(_) | Origin::Column { .. } | Origin::Overturned => None,
         }
     }
 
@@ -120,7 +128,10 @@ impl Output {
         let path = format!("outputs.{name}");
         let example = "write the path of a number in summary.json, such as \"energy.largest_residual\", or a column of \
             trajectory.csv as { max = \"block.phi\" }, min, max_abs, final, or { at = \"0.5 s\", of = \"block.phi\" }, \
-            or { spectral_acceleration = \"0.5 s\" } of the record at this period";
+            or { spectral_acceleration = \"0.5 s\" } of the record at this period, or \"overturned\" for yes or no";
+        if node.text() == Some("overturned") {
+            return Some(Self { name: name.to_owned(), origin: Origin::Overturned });
+        }
         if let Some(place) = node.text() {
             return Some(Self { name: name.to_owned(), origin: Origin::Summary(place.to_owned()) });
         }
@@ -191,6 +202,10 @@ impl Output {
                 let Some(value) = summary.and_then(|summary| summary.value(key)) else { return String::new() };
                 let found = rest.map_or(Some(Cow::Borrowed(&value)), |rest| at_path(&value, rest));
                 found.map(text_of).unwrap_or_default()
+            }
+            Origin::Overturned => {
+                let overturned = |summary: &Summary| summary.value("overturned_at").is_some_and(|at| !at.is_null());
+                summary.map(|summary| overturned(summary).to_string()).unwrap_or_default()
             }
             Origin::Column { name, reduction } => {
                 columns.reduced(name, reduction).map(|value| format!("{value:?}")).unwrap_or_default()
