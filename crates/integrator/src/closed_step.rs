@@ -387,8 +387,8 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         let present =
             middle.iter().zip(&rooms).filter(|(_, room)| past || **room >= 0.0).map(|(candidate, _)| candidate);
         let some_past = past && rooms.iter().any(|room| *room < 0.0);
-        let posed = self.stage.hand_springs_over(model, state, present.clone(), some_past, work).and_then(|()| {
-            present.into_iter().try_for_each(|candidate| match self.stage.is_left_out(candidate.id) {
+        let posed = self.stage.springs.hand_over(model, state, present.clone(), some_past, work).and_then(|()| {
+            present.into_iter().try_for_each(|candidate| match self.stage.springs.leaves_out(candidate.id) {
                 true => Ok(()),
                 false => self.pose(model, state, span.h, work, candidate),
             })
@@ -453,12 +453,9 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.resting_shift.push(shift[0]);
         self.slides.push(before_t - tangential(&shift));
         let rule = if law.impact.spring().is_some() {
-            let gap = match state.memory.spring_gap(candidate.id) {
-                Some(gap) if gap < 0.0 => gap,
-                _ => match self.stage.inherited_gap(candidate.id) {
-                    Some(gap) => gap,
-                    None => self.gap_at_start(model, state, work, candidate.id)?.max(0.0),
-                },
+            let gap = match self.stage.springs.kept_gap(candidate.id, &state.memory) {
+                Some(gap) => gap,
+                None => self.gap_at_start(model, state, work, candidate.id)?.max(0.0),
             };
             shift[0] = 0.0;
             SpringStep::new(&law.impact, gap, u_before[0], h, THETA).map_or(Rule::Shifted, Rule::Spring)
@@ -499,10 +496,9 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         work.locate(model, &state.q, &self.new, &mut self.start)?;
         for id in &self.new {
             let gap = |candidates: &[Candidate<D>]| find(candidates, *id).map_or(0.0, |candidate| candidate.gap);
-            // A spring may have to go on as it rebounds.
-            let law = find(&work.candidates, *id).map(|candidate| candidate.law);
-            let springs = law.and_then(|law| model.law(law).ok()).is_some_and(|law| law.impact.spring().is_some());
-            let began = if springs { 0.0 } else { gap(&self.start).min(0.0) };
+            // A spring may have to go on for another one that rebounds.
+            let has_spring = find(&work.candidates, *id).is_some_and(|deep| model.spring(deep.law).is_some());
+            let began = if has_spring { 0.0 } else { gap(&self.start).min(0.0) };
             if gap(&work.candidates) < began - SINKING * self.gap_tolerance {
                 self.closed.push(*id);
             }

@@ -93,6 +93,11 @@ impl Memory {
         self.gaps.get(at).copied()
     }
 
+    /// That gap of one that is compressed, m: negative.
+    pub(crate) fn pressed_gap(&self, id: ContactId) -> Option<f64> {
+        self.spring_gap(id).filter(|gap| *gap < 0.0)
+    }
+
     /// The numbers that a scheme stored last; `None` if there are none yet, or not as many.
     ///
     /// ```

@@ -1,7 +1,7 @@
 //! What a step did, phase by phase: what observers read, whatever the scheme.
 
 use crate::contact::tangential;
-use crate::{Contact, ContactStage, Energy, ImpactLaw, Model, Size, State, StepEnergy, StepSpan};
+use crate::{Contact, ContactStage, Energy, Model, Size, State, StepEnergy, StepSpan};
 use teeter_contact::Outcome;
 
 /// What happens in a phase of a step.
@@ -312,8 +312,7 @@ impl<const D: usize> Kept<D> {
             let slip = tangential(&contact.u_law).dot(&contact.p);
             self.largest_slip_work = self.largest_slip_work.max(slip);
             if let Some(gap) = contact.gap_after
-                && let Some(spring) =
-                    model.law(contact.law).ok().map(|law| law.impact).as_ref().and_then(ImpactLaw::spring)
+                && let Some(spring) = model.spring(contact.law)
             {
                 self.stored += spring.potential(gap);
             }

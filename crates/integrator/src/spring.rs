@@ -19,7 +19,7 @@
 //! side of compression converges.
 
 use crate::{ImpactLaw, Memory, Mismatch, Model, State, Workspace};
-use teeter_detect::{Anchor, Candidate, Candidates, ContactId};
+use teeter_detect::{Anchor, Candidate, Candidates, ContactId, LawId};
 
 /// A contact's spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +43,19 @@ impl ImpactLaw {
             }
             Self::Newton | Self::Poisson | Self::Energetic => None,
         }
+    }
+
+    /// Whether contacts have a duration, as they have springs.
+    #[must_use]
+    pub fn has_duration(&self) -> bool {
+        self.spring().is_some()
+    }
+}
+
+impl<const D: usize> Model<D> {
+    /// The spring of a contact's law; `None` for impacts of an instant.
+    pub(crate) fn spring(&self, law: LawId) -> Option<Spring> {
+        self.law_of(law).ok()?.impact.spring()
     }
 }
 
@@ -161,10 +174,12 @@ pub(crate) struct Springs<const D: usize> {
     touched: Vec<(ContactId, f64)>,
     /// Those that take over the spring of a contact which has ended, with the gaps that they start from, in order of identity.
     heirs: Vec<(ContactId, f64)>,
-    /// Those of which it is known what they do: memory of a search.
-    settled: Vec<ContactId>,
     /// Those that take no part.
     left_out: Vec<ContactId>,
+    /// Of new contacts that are inside at the start of the step, and of pressed ones: where they are then, and how far it is to the end of
+    /// their surface, m. Memory of a search.
+    inside: Vec<(Candidate<D>, f64)>,
+    pressed: Vec<(Candidate<D>, f64)>,
     /// Memory for contacts to look for.
     ids: Vec<ContactId>,
     located: Candidates<D>,
@@ -184,7 +199,8 @@ impl<const D: usize> Springs<D> {
         self.touched.reserve(contacts);
         self.ids.reserve(contacts);
         self.heirs.reserve(contacts);
-        self.settled.reserve(2 * contacts);
+        self.inside.reserve(contacts);
+        self.pressed.reserve(contacts);
         self.left_out.reserve(2 * contacts);
         self.located.reserve(contacts);
         self.rooms.reserve(contacts);
@@ -212,75 +228,79 @@ impl<const D: usize> Springs<D> {
     ) -> Result<(), Mismatch> {
         self.heirs.clear();
         self.left_out.clear();
-        let depth_of = |id| state.memory.spring_gap(id).filter(|gap| *gap < 0.0).map(|gap| -gap);
-        let spring_of = |law| model.law(law).ok().and_then(|law| law.impact.spring());
-        let is_new = |of: &&Candidate<D>| depth_of(of.id).is_none() && spring_of(of.law).is_some();
-        self.ids.clear();
-        self.ids.extend(present.clone().filter(is_new).map(|of| of.id));
-        let new = self.ids.len();
-        self.ids.extend(state.memory.active().iter().filter(|id| depth_of(**id).is_some()));
-        if (new == 0 && !some_past) || self.ids.len() == new {
+        let memory = &state.memory;
+        let is_pressed = |id: &ContactId| memory.pressed_gap(*id).is_some();
+        if !model.has_springs() || !memory.active().iter().any(is_pressed) {
             return Ok(());
         }
-        self.ids.sort_unstable();
+        let is_new = |of: &&Candidate<D>| !is_pressed(&of.id) && model.spring(of.law).is_some();
+        self.ids.clear();
+        self.ids.extend(present.clone().filter(is_new).map(|of| of.id));
+        self.inside.clear();
+        if !self.ids.is_empty() {
+            work.locate_past_ends(model, &state.q, &self.ids, &mut self.located, &mut self.rooms)?;
+            // A beam has no foot past its end: what comes over it within the step is known by where it is then.
+            for of in present.clone().filter(is_new) {
+                let found = self.located.binary_search_by_key(&of.id, |at| at.id);
+                self.inside.push(found.map_or((*of, f64::NEG_INFINITY), |k| (self.located[k], self.rooms[k])));
+            }
+            self.inside.retain(|(new, _)| new.gap < 0.0);
+        }
+        if self.inside.is_empty() && !some_past {
+            return Ok(());
+        }
+        self.ids.clear();
+        self.ids.extend(memory.active().iter().filter(|id| is_pressed(id)));
         work.locate_past_ends(model, &state.q, &self.ids, &mut self.located, &mut self.rooms)?;
-        // A beam has no foot past its end: what comes over it within the step is known by where it is then.
-        for of in present.clone().filter(is_new) {
-            if !self.located.iter().any(|known| known.id == of.id) {
-                self.located.push(*of);
-                self.rooms.push(f64::NEG_INFINITY);
-            }
+        self.pressed.clear();
+        self.pressed.extend(self.located.iter().copied().zip(self.rooms.iter().copied()));
+        if some_past {
+            self.left_out.extend(self.pressed.iter().filter(|(_, room)| *room < 0.0).map(|(ended, _)| ended.id));
         }
-        for (pressed, room) in self.located.iter().zip(&self.rooms).filter(|_| some_past) {
-            if *room < 0.0 && depth_of(pressed.id).is_some() {
-                self.left_out.push(pressed.id);
-            }
-        }
-        // Those that have ended before those that are present, and the nearest two first, so that a spring goes to the contact at its place.
-        let is_present = |before: &Candidate<D>, room: f64| {
-            let here = present.clone().any(|of| of.id == before.id);
-            here && room >= 0.0
-        };
-        loop {
-            let mut nearest: Option<(usize, usize, (bool, f64))> = None;
-            for (k, heir) in self.located.iter().enumerate() {
-                if !is_new(&heir) || heir.gap >= 0.0 || self.settled.contains(&heir.id) {
-                    continue;
-                }
-                for (j, before) in self.located.iter().enumerate() {
-                    let Some(depth) = depth_of(before.id).filter(|_| !self.settled.contains(&before.id)) else {
-                        continue;
-                    };
-                    let Some(apart) = apart(&heir.sides, &before.sides) else { continue };
-                    let order = (is_present(before, self.rooms[j]), apart);
-                    if -heir.gap >= AS_DEEP * depth && nearest.is_none_or(|(.., known)| order < known) {
-                        nearest = Some((k, j, order));
-                    }
-                }
-            }
-            let Some((k, j, (is_present, apart))) = nearest else { break };
-            let (heir, before) = (self.located[k], self.located[j]);
-            self.settled.push(heir.id);
+        let is_present =
+            |(before, room): &(Candidate<D>, f64)| *room >= 0.0 && present.clone().any(|of| of.id == before.id);
+        while let Some((k, j, (is_present, apart))) = self.nearest(memory, is_present) {
+            let (heir, room) = self.inside.remove(k);
             if is_present {
                 // Surfaces that meet overlap by rounding: there both are over theirs, at one point.
-                if self.rooms[k] < 0.0 || apart <= ONE_POINT * -heir.gap {
+                if room < 0.0 || apart <= ONE_POINT * -heir.gap {
                     self.left_out.push(heir.id);
                 }
                 continue;
             }
-            self.settled.push(before.id);
-            if let (Some(spring), Some(depth)) = (spring_of(heir.law), depth_of(before.id)) {
-                let depth = match spring_of(before.law) {
-                    Some(other) if other != spring => spring.depth_of(other.potential(-depth)),
-                    _ => depth,
+            let (before, _) = self.pressed.remove(j);
+            if let (Some(spring), Some(gap)) = (model.spring(heir.law), memory.pressed_gap(before.id)) {
+                let gap = match model.spring(before.law) {
+                    Some(other) if other != spring => -spring.depth_of(other.potential(gap)),
+                    _ => gap,
                 };
-                self.heirs.push((heir.id, -depth));
+                self.heirs.push((heir.id, gap));
                 self.left_out.push(before.id);
             }
         }
         self.heirs.sort_unstable_by_key(|(id, _)| *id);
-        self.settled.clear();
         Ok(())
+    }
+
+    /// A new contact and a pressed one that it can go on for, by their numbers: those that have ended before those that are present, and of
+    /// these the two that are nearest to each other, so that a spring goes to the contact at its place.
+    fn nearest(
+        &self,
+        memory: &Memory,
+        is_present: impl Fn(&(Candidate<D>, f64)) -> bool,
+    ) -> Option<(usize, usize, (bool, f64))> {
+        let mut nearest: Option<(usize, usize, (bool, f64))> = None;
+        for (k, (heir, _)) in self.inside.iter().enumerate() {
+            for (j, before) in self.pressed.iter().enumerate() {
+                let goes_on = memory.pressed_gap(before.0.id).is_some_and(|gap| heir.gap <= AS_DEEP * gap);
+                let Some(apart) = apart(&heir.sides, &before.0.sides).filter(|_| goes_on) else { continue };
+                let order = (is_present(before), apart);
+                if nearest.is_none_or(|(.., known)| order < known) {
+                    nearest = Some((k, j, order));
+                }
+            }
+        }
+        nearest
     }
 
     /// Whether a contact takes no part in the step, as it has ended or waits for another to end.
@@ -288,10 +308,10 @@ impl<const D: usize> Springs<D> {
         self.left_out.contains(&id)
     }
 
-    /// The gap with which a contact's spring takes over from one that has ended, m; `None` if it doesn't.
-    pub(crate) fn inherited(&self, id: ContactId) -> Option<f64> {
-        let at = self.heirs.binary_search_by_key(&id, |(id, _)| *id).ok()?;
-        Some(self.heirs[at].1)
+    /// The gap that a spring starts the step with which was pressed before, or takes over from one that has ended, m; `None` of others.
+    pub(crate) fn kept_gap(&self, id: ContactId, memory: &Memory) -> Option<f64> {
+        let inherited = || Some(self.heirs[self.heirs.binary_search_by_key(&id, |(id, _)| *id).ok()?].1);
+        memory.pressed_gap(id).or_else(inherited)
     }
 
     /// Finds the contacts that the free motion from `q` to `q_free` brings into contact.
@@ -303,7 +323,7 @@ impl<const D: usize> Springs<D> {
         work: &mut Workspace<D>,
     ) -> Result<(), Mismatch> {
         work.detect(model, q_free, 0.0)?;
-        let spring = |c: &&Candidate<D>| model.law(c.law).is_ok_and(|law| law.impact.spring().is_some());
+        let spring = |c: &&Candidate<D>| model.spring(c.law).is_some();
         let springs = work.candidates.iter().filter(spring);
         self.touched.clear();
         self.touched.extend(springs.map(|candidate| (candidate.id, 0.0)));
@@ -341,7 +361,7 @@ impl<const D: usize> Springs<D> {
     /// Whether a candidate at the predicted position is a contact of the step.
     pub(crate) fn admit(&self, spring: bool, candidate: &Candidate<D>, memory: &Memory, gap_tolerance: f64) -> bool {
         if spring {
-            memory.spring_gap(candidate.id).is_some_and(|gap| gap < 0.0) || self.touches(candidate.id).is_some()
+            memory.pressed_gap(candidate.id).is_some() || self.touches(candidate.id).is_some()
         } else {
             candidate.gap <= gap_tolerance
         }
@@ -355,10 +375,7 @@ impl<const D: usize> Springs<D> {
     /// The gap that a contact's spring starts the step with. One that was not touched before holds no energy, so it starts
     /// from zero at the deepest, wherever its point may be.
     pub(crate) fn gap(&self, id: ContactId, memory: &Memory) -> f64 {
-        match memory.spring_gap(id) {
-            Some(gap) if gap < 0.0 => gap,
-            _ => self.inherited(id).unwrap_or_else(|| self.touches(id).unwrap_or(0.0).max(0.0)),
-        }
+        self.kept_gap(id, memory).unwrap_or_else(|| self.touches(id).unwrap_or(0.0).max(0.0))
     }
 }
 

@@ -17,7 +17,7 @@ pub(crate) use posed::Problem;
 pub(crate) use rows::ContactRows;
 pub(crate) use solve::Members;
 use teeter_contact::{Block, ProblemError};
-use teeter_detect::{BodyId, Candidate, ContactId};
+use teeter_detect::{BodyId, Candidate};
 
 /// Why contacts can't be solved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -162,7 +162,7 @@ pub struct ContactStage<const D: usize> {
     pub(crate) problem: Problem<D>,
     /// Compliance beside J W Jᵀ of some contacts.
     extra: Vec<(usize, Block<D>)>,
-    springs: Springs<D>,
+    pub(crate) springs: Springs<D>,
     islands: Islands<D>,
     /// Whether the last solve was by islands.
     apart: bool,
@@ -316,7 +316,7 @@ impl<const D: usize> ContactStage<D> {
         self.belong_to(model);
         let mut admitted = std::mem::take(&mut work.candidates);
         admitted.retain(|candidate| {
-            let spring = model.law(candidate.law).is_ok_and(|law| law.impact.spring().is_some());
+            let spring = model.spring(candidate.law).is_some();
             self.springs.admit(spring, candidate, &state.memory, look.within)
         });
         let taken = self.springs.hand_over(model, state, admitted.iter(), false, work).and_then(|()| {
@@ -328,29 +328,6 @@ impl<const D: usize> ContactStage<D> {
         });
         work.candidates = admitted;
         taken
-    }
-
-    /// Finds which springs of ended contacts the candidates `present`, in order of identity, take over, before they are posed. `some_past`:
-    /// whether some may be past the end of their surface at the start of the step.
-    pub(crate) fn hand_springs_over<'a>(
-        &mut self,
-        model: &Model<D>,
-        state: &State,
-        present: impl Iterator<Item = &'a Candidate<D>> + Clone,
-        some_past: bool,
-        work: &mut Workspace<D>,
-    ) -> Result<(), Mismatch> {
-        if model.has_springs() { self.springs.hand_over(model, state, present, some_past, work) } else { Ok(()) }
-    }
-
-    /// Whether a contact with a spring takes no part in the step, as it has ended, or waits until the one before it has.
-    pub(crate) fn is_left_out(&self, id: ContactId) -> bool {
-        self.springs.leaves_out(id)
-    }
-
-    /// The gap (m) with which the spring of a new contact starts that takes over from one that has ended; `None` of others.
-    pub(crate) fn inherited_gap(&self, id: ContactId) -> Option<f64> {
-        self.springs.inherited(id)
     }
 
     /// Marks that what is taken in from now on is of this model.

@@ -280,10 +280,8 @@ impl State {
         if model.has_springs() && self.q.len() == model.size().q {
             model.detector().locate(&model.placed_at(&self.q), memory.active(), &mut candidates);
         }
-        let stored = |candidate: &Candidate<D>| {
-            let (law, gap) = (model.law(candidate.law).ok()?, memory.spring_gap(candidate.id)?);
-            Some(law.impact.spring()?.potential(gap))
-        };
+        let stored =
+            |candidate: &Candidate<D>| Some(model.spring(candidate.law)?.potential(memory.spring_gap(candidate.id)?));
         let stored: f64 = candidates.iter().filter_map(stored).sum();
         self.ledger.take_stored(stored);
     }

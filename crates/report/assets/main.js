@@ -398,7 +398,6 @@
     lastWidth = document.documentElement.clientWidth;
     requestAnimationFrame(relayout);
   }).observe(document.documentElement);
-  // Paper has its own width; drawn for that of the screen, the plots' type would come out too small or too large.
   /** The picture in which a block is turned furthest from its start, and the last one. */
   function telling() {
     const last = times.length - 1;
@@ -425,6 +424,7 @@
     }
     show(printed.frame);
     if (active.length > 3) plots.choose(...strongestContacts());
+    // Paper has its own width; drawn for that of the screen, the plots' type would come out too small or too large.
     plots.drawFor(680);
   });
   window.addEventListener("afterprint", () => {

@@ -1,7 +1,8 @@
 //! What became of the blocks of a run: which overturned, came to rest, slid, left their beam or rock on (`docs/verdict.md`).
 //!
-//! [`Fates`] watches every step; [`Fates::verdict`] says at the end what became of whom, and [`Fates::stop`] meanwhile whether the run is to end. All of
-//! it follows from positions and velocities of blocks and what carries them: from what `trajectory.csv` has.
+//! [`Fates`] watches every step; [`Fates::verdict`] says at the end what became of whom, and [`Fates::stop`] meanwhile whether the run is to end. It
+//! follows from positions and velocities of blocks and what carries them, as `trajectory.csv` has them; only how a block moves at the end is told by the
+//! contacts that pressed, too.
 
 mod carrier;
 mod falling;

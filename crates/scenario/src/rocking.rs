@@ -9,7 +9,6 @@ use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::scene::{ContactScene, GroundScene, Placement, Scene, SupportingBody};
 use crate::wording;
-use teeter_integrator::ImpactLaw;
 
 /// A sum above this fraction of the swing gives a warning: on a beam the sum is smaller than
 /// predicted, and a block that overturns has few impacts, so the limit is twice that of a run.
@@ -54,8 +53,7 @@ fn is_housners(scene: &Scene, contact: &ContactScene) -> bool {
     let inclined = contact.surface == SupportingBody::Ground && scene.ground.as_ref().is_some_and(bent);
     let level = !inclined && scene.gravity[0] == 0.0;
     let law = &contact.law;
-    let compliant = matches!(law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. });
-    let bounces = law.restitution > 0.0 || compliant;
+    let bounces = law.restitution > 0.0 || law.impact.has_duration();
     let slides = contact.friction_of_feet()[0] < block.width / block.height;
     level && !(bounces || slides || scene.is_driven(contact))
 }

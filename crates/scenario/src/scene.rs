@@ -508,10 +508,8 @@ impl ContactScene {
     /// a compliant law.
     #[must_use]
     pub fn gives_back(&self) -> bool {
-        use teeter_integrator::ImpactLaw;
         let law = &self.law;
-        let has_duration = matches!(law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. });
-        has_duration || law.restitution > 0.0 || law.tangential_restitution > 0.0
+        law.impact.has_duration() || law.restitution > 0.0 || law.tangential_restitution > 0.0
     }
 }
 

@@ -84,7 +84,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         let Self { impact, near, .. } = self;
         impact.clear();
         let mut add = |candidate: &Candidate<D>| -> Result<(), Mismatch> {
-            if model.law(candidate.law)?.impact.spring().is_none() {
+            if model.spring(candidate.law).is_none() {
                 impact.add(model, &from.q, candidate, &from.warm, &from.memory)?;
             }
             Ok(())

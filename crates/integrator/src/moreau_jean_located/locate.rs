@@ -124,7 +124,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         for k in 0..work.candidates.len() {
             let Candidate { id, law, gap, .. } = work.candidates[k];
             let Err(at) = self.step.closed.binary_search(&id) else { continue };
-            if gap >= -tolerance || model.law(law)?.impact.spring().is_none() {
+            if gap >= -tolerance || model.spring(law).is_none() {
                 continue;
             }
             work.locate(model, &from.q, &[id], &mut self.near)?;
@@ -193,7 +193,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             if candidate.gap >= -tolerance || known || (least > 0.0 && self.pressed_lately(id)) {
                 continue;
             }
-            if model.law(candidate.law)?.impact.spring().is_some() {
+            if model.spring(candidate.law).is_some() {
                 // Inside beyond the end of its surface already, it goes on for another one from there on.
                 work.locate_past_ends(model, &from.q, &[id], &mut self.near, &mut self.rooms)?;
                 if self.near.first().is_some_and(|start| start.gap < -tolerance) {
@@ -250,7 +250,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
     ) -> Result<bool, Mismatch> {
         work.locate(model, &from.q, &[id], &mut self.near)?;
         let Some(candidate) = self.near.first() else { return Ok(false) };
-        if model.law(candidate.law)?.impact.spring().is_some() {
+        if model.spring(candidate.law).is_some() {
             return Ok(false);
         }
         let rate = rate_at(&mut self.one, model, &from.q, candidate, &from.v)?;

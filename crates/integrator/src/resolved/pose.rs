@@ -35,10 +35,10 @@ impl<const D: usize> Resolved<D> {
         work.locate(model, &self.q_mid, &self.ids, &mut self.middle)?;
         work.locate(model, &self.step.q_at, &self.ids, &mut self.ahead)?;
         self.find_momentum(model, from);
-        self.stage.hand_springs_over(model, from, self.middle.iter(), false, work)?;
+        self.stage.springs.hand_over(model, from, self.middle.iter(), false, work)?;
         for k in 0..self.middle.len() {
             let candidate = self.middle[k];
-            if self.stage.is_left_out(candidate.id) {
+            if self.stage.springs.leaves_out(candidate.id) {
                 continue;
             }
             self.pose_one(model, from, part, work, &candidate, pass)?;
@@ -108,10 +108,8 @@ impl<const D: usize> Resolved<D> {
             self.posed.push(Posed { held, resting_shift: shift[0], approach, way });
             rule = Rule::Shifted;
         } else if law.impact.spring().is_some() {
-            let gap = match from.memory.spring_gap(candidate.id) {
-                Some(gap) if gap < 0.0 => gap,
-                _ => self.stage.inherited_gap(candidate.id).unwrap_or_else(|| gap_before.max(0.0)),
-            };
+            let kept = self.stage.springs.kept_gap(candidate.id, &from.memory);
+            let gap = kept.unwrap_or_else(|| gap_before.max(0.0));
             shift[0] = 0.0;
             self.posed.push(Posed { held, resting_shift: 0.0, approach, way });
             rule = SpringStep::new(&law.impact, gap, u_before[0], part.h, THETA).map_or(Rule::Shifted, Rule::Spring);

@@ -277,11 +277,7 @@ impl Scenery {
                 linear: contact.kinematics == teeter_detect::Kinematics::Linear,
                 lower: contact.face == BeamFace::Lower,
                 points: drawn.collect(),
-                has_duration: matches!(
-                    contact.law.impact,
-                    teeter_integrator::ImpactLaw::KelvinVoigt { .. }
-                        | teeter_integrator::ImpactLaw::HuntCrossley { .. }
-                ),
+                has_duration: contact.law.impact.has_duration(),
                 has_friction: contact.law.friction > 0.0,
                 first,
             }

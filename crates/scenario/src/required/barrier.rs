@@ -10,7 +10,7 @@ use super::reach::{ROUNDING, Reach, ReachReason};
 use super::{InactivePairs, InitialMotion, Limits, Removed};
 use crate::scene::{ContactScene, SupportingBody};
 use teeter_beam::{Axial, Beam, MatrixWeights};
-use teeter_integrator::{BeamFace, ImpactLaw};
+use teeter_integrator::BeamFace;
 use teeter_text::readable::with_digits;
 
 /// The proof that no block tips over, with its numbers (`docs/required.md` §3).
@@ -388,8 +388,7 @@ fn conserves(start: &InitialMotion<'_>) -> bool {
 /// Whether a contact's law can't add energy: an instantaneous impact without restitution.
 fn loses(contact: &ContactScene) -> bool {
     let law = &contact.law;
-    let at_once = matches!(law.impact, ImpactLaw::Newton | ImpactLaw::Poisson | ImpactLaw::Energetic);
-    at_once && law.restitution == 0.0 && law.tangential_restitution == 0.0
+    !law.impact.has_duration() && law.restitution == 0.0 && law.tangential_restitution == 0.0
 }
 
 /// The weights of a static solve.

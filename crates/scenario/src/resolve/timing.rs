@@ -5,7 +5,7 @@ use crate::output_size::OutputSize;
 use crate::scene::{BeamScene, BlockScene, ContactScene, Crowd, Scene, SchemeName, StopScene, SupportingBody, Time};
 use crate::wording;
 use crate::words::{SchemeChoice, StopWord, Word};
-use teeter_integrator::{GeneralizedAlphaSettings, ImpactLaw, PairLaw};
+use teeter_integrator::{GeneralizedAlphaSettings, PairLaw};
 
 /// Most steps of a run.
 pub const MAX_STEPS: f64 = 1e12;
@@ -184,9 +184,7 @@ impl Resolver<'_, '_> {
     ) {
         let listed = contacts.iter().flatten().map(|contact| (&contact.name, &contact.law));
         let of_crowd = crowd.into_iter().flat_map(Crowd::contacts).map(|contact| (&contact.name, &contact.law));
-        let has_duration = |(_, law): &(&String, &PairLaw)| {
-            matches!(law.impact, ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. })
-        };
+        let has_duration = |(_, law): &(&String, &PairLaw)| law.impact.has_duration();
         let compliant = listed.chain(of_crowd).find(has_duration);
         if let Some((name, _)) = compliant.filter(|_| !scheme.takes_springs()) {
             let rule = format!("{} doesn't support compliant contacts, such as `{name}`", scheme.word());

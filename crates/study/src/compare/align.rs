@@ -142,15 +142,7 @@ impl<'a> Search<'a> {
             .iter()
             .filter_map(|(t, value)| Some((*value, self.trace.at_near(t + shift, &mut hint)?.of(self.channel))))
             .collect();
-        let mean = |pick: fn(&(f64, f64)) -> f64| pairs.iter().map(pick).sum::<f64>() / pairs.len() as f64;
-        let (a, b) = if centred { (mean(|p| p.0), mean(|p| p.1)) } else { (0.0, 0.0) };
-        let (mut off, mut all) = (0.0, 0.0);
-        for (x, y) in &pairs {
-            let (x, y) = (x - a, y - b);
-            off += (x - y) * (x - y);
-            all += x * x + y * y;
-        }
-        (all > 0.0).then_some(off / all)
+        mismatch_of(&pairs, centred)
     }
 
     /// The best shift and its mismatch: of the best of all shifts on a grid each is refined.
@@ -167,6 +159,20 @@ impl<'a> Search<'a> {
         let Some((shift, _)) = rough.min_by(|a, b| a.1.total_cmp(&b.1)) else { return (0.0, f64::INFINITY) };
         refined(shift, 4.0 * ROUGH * reach, FINE)
     }
+}
+
+/// Mean square difference of pairs of values, relative to the mean squares of both; `centred`: of both their means are taken first. `None` where
+/// all are 0.
+pub(crate) fn mismatch_of(pairs: &[(f64, f64)], centred: bool) -> Option<f64> {
+    let mean = |pick: fn(&(f64, f64)) -> f64| pairs.iter().map(pick).sum::<f64>() / pairs.len() as f64;
+    let (a, b) = if centred { (mean(|p| p.0), mean(|p| p.1)) } else { (0.0, 0.0) };
+    let (mut off, mut all) = (0.0, 0.0);
+    for (x, y) in pairs {
+        let (x, y) = (x - a, y - b);
+        off += (x - y) * (x - y);
+        all += x * x + y * y;
+    }
+    (all > 0.0).then_some(off / all)
 }
 
 /// The time shift (s) that aligns a motion with a run, and the mismatch that is left.

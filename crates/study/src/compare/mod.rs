@@ -9,7 +9,7 @@ mod trace;
 mod write;
 
 pub use align::{Alignment, AlignmentSettings, align};
-pub(crate) use align::{FINE, golden, mismatch_and_shift, set_zero};
+pub(crate) use align::{FINE, golden, mismatch_and_shift, mismatch_of, set_zero};
 pub use cycles::{HalfCycle, HalfCyclePair, ImpactPair, Swing, pair_half_cycles, pair_impacts, swing};
 pub use differences::{ChannelComparison, Differences};
 pub(crate) use trace::Tracer;

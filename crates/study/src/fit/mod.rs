@@ -143,6 +143,17 @@ const MOVES: usize = 6;
 /// A horizon that moves by less than this share cuts nothing off.
 const SAME_HORIZON: f64 = 0.02;
 
+/// What is fitted to what.
+#[derive(Clone, Copy)]
+struct Inputs<'a> {
+    source: &'a StudyScene,
+    resolved: &'a Resolved,
+    block: usize,
+    measured: &'a Measured,
+    keys: &'a [FitKey],
+    cancel: &'a Arc<AtomicBool>,
+}
+
 impl Fit {
     /// Fits `keys` of a scene to the measured motion of its block with the number `block`.
     ///
@@ -164,17 +175,15 @@ impl Fit {
         cancel: &Arc<AtomicBool>,
         report: &mut ReportFit<'_>,
     ) -> Result<Self, FitError> {
-        let mut once = |settings: &FitSettings| {
-            Self::once(source, resolved, block, measured, keys, settings, cancel, &mut *report)
-        };
-        let first = once(settings)?;
+        let inputs = Inputs { source, resolved, block, measured, keys, cancel };
+        let first = Self::once(inputs, settings, report)?;
         if settings.samples.is_some() || !first.is_misfit() {
             return Ok(first);
         }
         let seed = settings.seed.wrapping_add(1);
         let more = FitSettings { samples: Some(MORE * samples(keys)), seed, ..settings.clone() };
         // Interrupted, or without a better end, the first fit stands.
-        let Ok(second) = once(&more) else { return Ok(first) };
+        let Ok(second) = Self::once(inputs, &more, report) else { return Ok(first) };
         // The right values may have a shorter horizon than wrong ones; of two that are wrong, the one that says less of the motion isn't better.
         let comparable = second.until >= (1.0 - SAME_HORIZON) * first.until || !second.is_misfit();
         let better = comparable && second.cost < first.cost;
@@ -189,30 +198,12 @@ impl Fit {
         self.misfit > IMPROBABLE
     }
 
-    fn once(
-        source: &StudyScene,
-        resolved: &Resolved,
-        block: usize,
-        measured: &Measured,
-        keys: &[FitKey],
-        settings: &FitSettings,
-        cancel: &Arc<AtomicBool>,
-        report: &mut ReportFit<'_>,
-    ) -> Result<Self, FitError> {
+    /// A fit from one set of values to try first.
+    fn once(inputs: Inputs<'_>, settings: &FitSettings, report: &mut ReportFit<'_>) -> Result<Self, FitError> {
+        let Inputs { source, resolved, measured, keys, cancel, .. } = inputs;
         let mut evaluations = Vec::new();
         let own = own_values(resolved, keys);
-        let (mut objective, starts) = search(
-            source,
-            resolved,
-            block,
-            measured,
-            keys,
-            settings,
-            cancel,
-            own.as_deref(),
-            &mut evaluations,
-            report,
-        )?;
+        let (mut objective, starts) = search(inputs, settings, own.as_deref(), &mut evaluations, report)?;
         // The rows that count end at the horizon of the best values so far, and then at that of the
         // fitted ones.
         let mut until = objective.until;
@@ -364,17 +355,13 @@ fn si_of(key: &FitKey) -> f64 {
 /// Tries values all over the ranges, seen from both sides if that isn't given; returns the best,
 /// best first.
 fn search<'a>(
-    source: &'a StudyScene,
-    resolved: &Resolved,
-    block: usize,
-    measured: &Measured,
-    keys: &'a [FitKey],
+    inputs: Inputs<'a>,
     settings: &FitSettings,
-    cancel: &'a Arc<AtomicBool>,
     own: Option<&[f64]>,
     evaluations: &mut Vec<Evaluation>,
     report: &mut ReportFit<'_>,
 ) -> Result<(Objective<'a>, Vec<Trial>), FitError> {
+    let Inputs { source, resolved, block, measured, keys, cancel } = inputs;
     let start = initial_angle(resolved, block);
     let objective = |sign: Sign| {
         let mut motion = measured.motion(sign);

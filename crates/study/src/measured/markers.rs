@@ -33,11 +33,7 @@ pub(super) struct Pose {
 /// The pose that brings points of the body closest to where they are seen, by least squares: their
 /// centroids coincide, and tan φ = Σ a × b / Σ a · b over the arms a on the body and b as seen.
 pub(super) fn rigid_fit(body: &[[f64; 2]], seen: &[[f64; 2]]) -> Pose {
-    let mean = |points: &[[f64; 2]]| {
-        let n = points.len() as f64;
-        [0, 1].map(|k| points.iter().map(|point| point[k]).sum::<f64>() / n)
-    };
-    let (from, to) = (mean(body), mean(seen));
+    let (from, to) = (middle(body), middle(seen));
     let (mut dot, mut cross) = (0.0, 0.0);
     for (a, b) in body.iter().zip(seen) {
         let (a, b) = ([a[0] - from[0], a[1] - from[1]], [b[0] - to[0], b[1] - to[1]]);
@@ -50,11 +46,15 @@ pub(super) fn rigid_fit(body: &[[f64; 2]], seen: &[[f64; 2]]) -> Pose {
     Pose { origin, phi }
 }
 
-/// Root mean square distance of points from their middle.
+fn middle(points: &[[f64; 2]]) -> [f64; 2] {
+    [0, 1].map(|k| points.iter().map(|point| point[k]).sum::<f64>() / points.len() as f64)
+}
+
+/// Root mean square distance of points, one or more, from their middle.
 pub(super) fn size_of(points: &[[f64; 2]]) -> f64 {
-    let n = points.len().max(1) as f64;
-    let mean = [0, 1].map(|k| points.iter().map(|point| point[k]).sum::<f64>() / n);
-    (points.iter().map(|point| (point[0] - mean[0]).powi(2) + (point[1] - mean[1]).powi(2)).sum::<f64>() / n).sqrt()
+    let [x, y] = middle(points);
+    (points.iter().map(|point| (point[0] - x).powi(2) + (point[1] - y).powi(2)).sum::<f64>() / points.len() as f64)
+        .sqrt()
 }
 
 impl Pose {

@@ -523,6 +523,33 @@ mod tests {
     }
 
     #[test]
+    fn what_contradicts_the_table_is_refused() {
+        let unit = |name: &str, unit: &str| {
+            let mut layout = ColumnLayout::default();
+            layout.set_unit(name, unit).unwrap();
+            read(&format!("t [s],phi [deg]\n{}", rows(|k| format!("{k},{}", 20 - k))), &layout)
+        };
+        assert!(unit("phi", "mrad").unwrap_err().contains("contradicts its heading, which says `deg`"));
+        assert!(unit("phi", "deg").is_ok() && unit("t", "ms").unwrap_err().contains("`s`"));
+        assert!(unit("x", "mm").unwrap_err().contains("no column `x` for x"));
+    }
+
+    #[test]
+    fn a_column_of_frames_that_skips_some_is_refused_for_rows_at_a_rate() {
+        let layout = ColumnLayout { rate: Some(165.0), ..ColumnLayout::default() };
+        let table = |heading: &str, frame: &dyn Fn(usize) -> usize| {
+            read(&format!("{heading},phi\n{}", rows(|k| format!("{},0.{k:02}", frame(k)))), &layout)
+        };
+        let skips = |k: usize| if k < 9 { k } else { k + 4 };
+        let error = table("Frame", &skips).unwrap_err();
+        assert!(
+            error.contains("line 11") && error.contains("goes from 8 to 13") && error.contains("t=\"Frame\""),
+            "{error}"
+        );
+        assert!(table("Frame", &|k| 10 * k).is_ok() && table("x in frame", &skips).is_ok());
+    }
+
+    #[test]
     fn frames_and_lost_cells_are_understood() {
         let mut layout = ColumnLayout { rate: Some(165.0), ..ColumnLayout::default() };
         let text = rows(|k| format!("{},{}", 100 + k, if k == 3 { String::new() } else { k.to_string() }));

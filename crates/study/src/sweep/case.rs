@@ -195,9 +195,8 @@ fn run_once(
         EndedWord::Complete | EndedWord::Stopped => String::new(),
         _ => Failure::unless_complete(ended, state.t).err().map_or_else(String::new, |error| error.to_string()),
     };
-    let mut paths = sweep.outputs().iter().filter_map(Output::summary_path).peekable();
-    // Columns need none.
-    let summary = if paths.peek().is_some() || sweep.outputs().iter().any(Output::is_overturned) {
+    let mut paths = sweep.outputs().iter().filter_map(Output::summary_path);
+    let summary = if sweep.outputs().iter().any(Output::needs_summary) {
         let of_records = paths.any(|path| path.split('.').next() == Some("records"));
         let summary = if of_records { Summary::new } else { Summary::without_records };
         Some(summary(&scene, &layout, state, &record, word, 0.0))

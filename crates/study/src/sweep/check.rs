@@ -1,6 +1,7 @@
 //! What a sweep file and its scene say together: refused before the first case is run.
 
 use super::Sweep;
+use super::figures::Bands;
 use super::find::Find;
 use super::output::Output;
 use super::spec::{Node, Reader, entries};
@@ -69,40 +70,24 @@ impl Sweep {
         let tables = entries(root.get_ref());
         let written = tables.iter().find(|(name, _)| *name == "outputs").and_then(|(_, node)| node.table());
         let places: Vec<(&str, Node<'_, '_>)> = written.map(entries).unwrap_or_default();
-        let of_bands = |output: &Output| {
-            let bands = self.wanted().bands.as_ref();
-            bands.is_some_and(|bands| bands.outputs().any(|of_bands| of_bands == *output))
-        };
-        let varies = |key: &str| self.case(0).iter().any(|(varied, _)| varied == key);
-        let past_end = |output: &Output| {
-            let end = offered.iter().map(|offered| offered.end).fold(0.0, f64::max);
-            let t = output.time().filter(|t| !offered.is_empty() && !varies("time.end") && *t > end * (1.0 + 1e-12))?;
-            Some(Missing { rule: format!("t = {t} s is after the end of the runs, t = {end} s"), meant: None })
-        };
+        let of_bands: Vec<Output> = self.wanted().bands.iter().flat_map(Bands::outputs).collect();
+        let end = offered.iter().map(|offered| offered.end).fold(0.0, f64::max);
+        let end_is_known = !offered.is_empty() && !self.case(0).iter().any(|(key, _)| key == "time.end");
+        let missing =
+            |output: &Output| missing(output, &offered).or_else(|| past_end(output, end).filter(|_| end_is_known));
         for output in self.outputs() {
-            let Some(Missing { rule, meant }) = missing(output, &offered).or_else(|| past_end(output)) else {
-                continue;
-            };
-            if of_bands(output) {
-                // One is wrong as the others are.
-                if !reader.found.0.iter().any(|finding| finding.path == "bands") {
-                    let table = tables.iter().find(|(name, _)| *name == "bands").map(|(_, node)| node);
-                    let remedy = "take a column of the trajectory.csv of one case, up to a time before its end";
-                    reader.wrong("bands", table, &rule, remedy);
-                    if let Some(finding) = reader.found.0.last_mut() {
-                        finding.did_you_mean = meant;
-                    }
-                }
+            let Some(Missing { rule, meant, remedy }) = missing(output) else { continue };
+            let is_of_bands = of_bands.contains(output);
+            // Of the bands one is wrong as the others are.
+            if is_of_bands && reader.found.0.iter().any(|finding| finding.path == "bands") {
                 continue;
             }
-            let place = places.iter().find(|(name, _)| *name == output.name()).map(|(_, node)| node);
-            let remedy = match missing(output, &offered) {
-                Some(_) => {
-                    "run one case with `teeter run`, and take a number of its summary.json or a column of its trajectory.csv"
-                }
-                None => "take a time up to there, or make the runs longer (`time.end`)",
+            let (path, place) = if is_of_bands {
+                ("bands".to_owned(), tables.iter().find(|(name, _)| *name == "bands"))
+            } else {
+                (format!("outputs.{}", output.name()), places.iter().find(|(name, _)| *name == output.name()))
             };
-            reader.wrong(&format!("outputs.{}", output.name()), place, &rule, remedy);
+            reader.wrong(&path, place.map(|(_, node)| node), &rule, remedy);
             if let Some(finding) = reader.found.0.last_mut() {
                 finding.did_you_mean = meant;
             }
@@ -129,6 +114,22 @@ impl Sweep {
 struct Missing {
     rule: String,
     meant: Option<String>,
+    remedy: &'static str,
+}
+
+impl Missing {
+    fn new(rule: String, meant: Option<String>) -> Self {
+        let remedy =
+            "run one case with `teeter run`, and take a number of its summary.json or a column of its trajectory.csv";
+        Self { rule, meant, remedy }
+    }
+}
+
+/// `None` for an output that isn't after the end of the runs (s).
+fn past_end(output: &Output, end: f64) -> Option<Missing> {
+    let t = output.time().filter(|t| *t > end * (1.0 + 1e-12))?;
+    let rule = format!("t = {t} s is after the end of the runs, t = {end} s");
+    Some(Missing { rule, meant: None, remedy: "take a time up to there, or make the runs longer (`time.end`)" })
 }
 
 /// `None` where a run can have the output.
@@ -146,7 +147,7 @@ fn missing(output: &Output, offered: &[Offered]) -> Option<Missing> {
         if known.len() > MOST_LISTED { format!(" and {} more", known.len() - MOST_LISTED) } else { String::new() };
     let listed = known[..known.len().min(MOST_LISTED)].join(", ");
     let rule = format!("trajectory.csv has no column {name}; it has {listed}{more}");
-    Some(Missing { rule, meant: nearest(name, known).map(str::to_owned) })
+    Some(Missing::new(rule, nearest(name, known).map(str::to_owned)))
 }
 
 fn missing_value(path: &str, summary: Option<&Summary>) -> Option<Missing> {
@@ -155,7 +156,7 @@ fn missing_value(path: &str, summary: Option<&Summary>) -> Option<Missing> {
     if !Summary::KEYS.contains(&key) {
         let near = nearest(key, Summary::KEYS);
         let meant = near.map(|near| inner.map_or_else(|| near.to_owned(), |inner| format!("{near}.{inner}")));
-        return Some(Missing { rule: rule(), meant });
+        return Some(Missing::new(rule(), meant));
     }
     let inner = inner.filter(|_| FIXED_PARTS.contains(&key))?;
     let mut now = &summary?.value(key)?;
@@ -165,11 +166,11 @@ fn missing_value(path: &str, summary: Option<&Summary>) -> Option<Missing> {
             Value::Object(map) => map,
             // What a run may have.
             Value::Null => return None,
-            _ => return Some(Missing { rule: rule(), meant: None }),
+            _ => return Some(Missing::new(rule(), None)),
         };
         let Some(next) = map.get(part) else {
             let near = nearest(part, map.keys().map(String::as_str));
-            return Some(Missing { rule: rule(), meant: near.map(|near| format!("{before}.{near}")) });
+            return Some(Missing::new(rule(), near.map(|near| format!("{before}.{near}"))));
         };
         before = format!("{before}.{part}");
         now = next;

@@ -78,10 +78,9 @@ impl Output {
         }
     }
 
-    /// Whether it says if a block has overturned.
-    #[must_use]
-    pub fn is_overturned(&self) -> bool {
-        self.origin == Origin::Overturned
+    /// Whether it is found in the summary of a run.
+    pub(crate) fn needs_summary(&self) -> bool {
+        matches!(self.origin, Origin::Summary(_) | Origin::Overturned)
     }
 
     /// The record whose spectral acceleration it is, if it is one; empty for the first.

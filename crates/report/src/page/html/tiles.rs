@@ -131,7 +131,7 @@ const NAMES: [(&str, &str); 18] = [
     ("t", "Time reached"),
     ("ended", "The run is"),
     ("contact.solver", "Contact solver"),
-    ("contact.max_contact_residual", "Largest residual of one contact, relative (near 1: a guess)"),
+    ("contact.max_contact_residual", "Largest residual of one contact, relative (near 1: its impulse is a guess)"),
     ("contact.max_contacts", "Most contacts in a step"),
     ("energy.initial", "Energy at the start"),
     ("energy.final", "Energy at the end"),

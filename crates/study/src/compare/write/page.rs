@@ -1,7 +1,7 @@
 //! `compare.html`: a self-contained page in the style of a run's report.
 
 use super::motion_figures;
-use crate::compare::{ChannelComparison, Comparison, FEWEST, ImpactPair};
+use crate::compare::{ChannelComparison, Comparison, FEWEST, ImpactPair, mismatch_of};
 use crate::measured::{Channel, MeasuredMotion, Sign};
 use crate::write::{html_list, html_table, percent, power, short};
 use std::fmt::Write;
@@ -122,25 +122,13 @@ const UNLIKE: f64 = 0.1;
 fn mismatch(comparison: &Comparison) -> f64 {
     let aligned = comparison.alignment.mismatch;
     let Some(found) = comparison.channels.iter().find(|found| found.is_measured) else { return aligned };
-    let pairs = || {
-        let rows = comparison.rows.clone();
-        let of = |values: &[f64]| values.get(rows.clone()).unwrap_or_default().to_vec();
-        let both = of(&found.measured.value).into_iter().zip(of(&found.simulated.value));
-        both.filter(|(measured, simulated)| measured.is_finite() && simulated.is_finite())
-    };
-    let n = pairs().count() as f64;
-    let mean = |pick: fn((f64, f64)) -> f64| {
-        if found.channel.has_own_origin() { pairs().map(pick).sum::<f64>() / n } else { 0.0 }
-    };
-    let (a, b) = (mean(|pair| pair.0), mean(|pair| pair.1));
-    let (off, all) = pairs().fold((0.0, 0.0), |(off, all), (x, y)| {
-        let (x, y) = (x - a, y - b);
-        (off + (x - y) * (x - y), all + x * x + y * y)
-    });
-    if all > 0.0 { aligned.max(off / all) } else { aligned }
+    let both = found.measured.value.iter().copied().zip(found.simulated.value.iter().copied());
+    let compared = both.skip(comparison.rows.start).take(comparison.rows.len());
+    let pairs: Vec<(f64, f64)> = compared.filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
+    mismatch_of(&pairs, found.channel.has_own_origin()).map_or(aligned, |compared| aligned.max(compared))
 }
 
-/// Markers that miss their places on the block by more than this share of their distances aren't on one rigid body.
+/// Markers that miss their places on the block by more than this share of their distance from their middle aren't on one rigid body.
 const NOT_RIGID: f64 = 0.03;
 
 /// Says that the markers don't fit a rigid body, and what may be wrong.
