@@ -216,13 +216,12 @@ pub trait ContactDetector<const D: usize>: Send + Sync {
         let _ = (at, id, direction);
         None
     }
-    /// Whether the first side of a contact touches by one and the same point of its body as long as
-    /// the contact lasts, as a corner does and a disc doesn't. The default, `false`, is always
-    /// right: a scheme that needs accelerations then takes the derivative of the rows along the
-    /// motion, which costs more.
-    fn keeps_point(&self, id: ContactId) -> bool {
+    /// Which side of a contact, 0 or 1, touches by one and the same point of its body as long as the contact lasts, as a
+    /// sharp corner does and a disc doesn't. The default, `None`, is always right: a scheme that needs accelerations then
+    /// takes the derivative of the rows along the motion, which costs more.
+    fn fixed_side(&self, id: ContactId) -> Option<usize> {
         let _ = id;
-        false
+        None
     }
     /// The pairs that it looks at, as far as they are known before anything moves, so that a model
     /// can refuse what can't work when it is built. By default none are listed, and candidates are

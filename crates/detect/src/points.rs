@@ -157,8 +157,8 @@ impl ContactDetector<2> for PointDetector<2> {
         out.extend(ids.iter().filter_map(|id| self.located(at, *id)));
     }
 
-    fn keeps_point(&self, _id: ContactId) -> bool {
-        true
+    fn fixed_side(&self, _id: ContactId) -> Option<usize> {
+        Some(0)
     }
 
     fn wiring(&self) -> Vec<Wiring> {

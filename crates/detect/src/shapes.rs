@@ -450,24 +450,22 @@ impl ContactDetector<2> for ShapeDetector {
         Some(of_sides.map(|normal| apart(&normal)).fold(apart(direction), f64::max))
     }
 
-    fn keeps_point(&self, id: ContactId) -> bool {
+    fn fixed_side(&self, id: ContactId) -> Option<usize> {
         if self.on_side(id).is_some() {
-            return false;
+            return None;
         }
         let corner = id.point() as usize;
         if let Ok(found) = self.surfaces.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) {
-            return self.shapes.is_sharp_at(self.surfaces[found].1, corner);
+            return self.shapes.is_sharp_at(self.surfaces[found].1, corner).then_some(0);
         }
+        let CornerOnSide { owner, corner, round, .. } = CornerOnSide::from_number(id.point());
         if let Ok(found) = self.on_profile.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair) {
-            let CornerOnSide { owner, corner, .. } = CornerOnSide::from_number(id.point());
-            return owner == 0 && self.shapes.is_sharp_at(self.on_profile[found].1, corner);
+            return (owner == 0 && self.shapes.is_sharp_at(self.on_profile[found].1, corner)).then_some(0);
         }
-        if self.pairs.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair).is_ok() {
-            let CornerOnSide { owner, round, .. } = CornerOnSide::from_number(id.point());
-            return owner == 0 && !round;
-        }
-        // Points have numbers that no groups have.
-        self.near_pair(id.pair()).is_none()
+        let between_shapes = self.pairs.binary_search_by_key(&id.pair(), |(pair, _)| pair.pair).is_ok()
+            || self.near_pair(id.pair()).is_some();
+        // Points have numbers that neither pairs nor groups have.
+        if between_shapes { (!round).then_some(owner) } else { Some(0) }
     }
 
     fn wiring(&self) -> Vec<Wiring> {

@@ -5,11 +5,13 @@
 //! Its formulas, and why no contact gives energy, are at
 //! [`MoreauJeanClosed`](crate::MoreauJeanClosed).
 
-mod grazing;
 mod guard;
 mod together;
 
+pub(crate) use together::moving;
+
 use crate::contact::tangential;
+use crate::grazing::Grazing;
 use crate::laws::is_impact;
 use crate::stage::ContactRows;
 use crate::step_motion::StepMotion;
@@ -58,12 +60,11 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     pub(crate) closed: Vec<ContactId>,
     /// Those of them that have been looked at in this step, and those that are new.
     looked: Vec<ContactId>,
-    new: Vec<ContactId>,
+    pub(crate) new: Vec<ContactId>,
     /// What was found of the new ones.
     found: Candidates<D>,
     found_rooms: Vec<f64>,
-    /// New contacts that may graze.
-    suspects: Vec<ContactId>,
+    pub(crate) grazing: Grazing<D>,
     /// Of each body: how deep it is in what it was on before, m.
     depths: Vec<f64>,
     /// Of each body: what would land within this time lands together with a contact that has just been closed, s; 0 where there is none.
@@ -121,7 +122,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             new: Vec::new(),
             found: Vec::new(),
             found_rooms: Vec::new(),
-            suspects: Vec::new(),
+            grazing: Grazing::default(),
             depths: Vec::new(),
             landings: Vec::new(),
             rigid: Vec::new(),
@@ -158,7 +159,8 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.stage.reserve(model);
         self.row.reserve(1, model.size().row, model.parts().len());
         self.found_rooms.reserve(contacts);
-        for ids in [&mut self.closed, &mut self.looked, &mut self.new, &mut self.suspects] {
+        self.grazing.reserve(contacts);
+        for ids in [&mut self.closed, &mut self.looked, &mut self.new] {
             ids.reserve(contacts);
         }
         for of_bodies in [&mut self.depths, &mut self.landings] {
@@ -482,17 +484,28 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         Ok(self.start.first().map_or(0.0, |candidate| candidate.gap))
     }
 
+    /// Finds the open contacts that the attempt ends with deeper in their surface than a tolerance (m), without those that graze; they are the
+    /// workspace's candidates.
+    pub(crate) fn find_new(
+        &mut self,
+        model: &Model<D>,
+        tolerance: f64,
+        work: &mut Workspace<D>,
+    ) -> Result<(), Mismatch> {
+        self.new.clear();
+        let deep = work.candidates.iter().filter(|candidate| candidate.gap < -tolerance).map(|deep| deep.id);
+        self.new.extend(deep.filter(|id| self.closed.binary_search(id).is_err()));
+        self.grazing.leave_out(model, self.step.q_end(), tolerance, &mut self.new, work)
+    }
+
     /// Closes the open contacts that the attempt ends with in their surface (they are the
     /// workspace's candidates), deeper than they began; whether there are any.
     fn close_what_sinks(&mut self, model: &Model<D>, state: &State, work: &mut Workspace<D>) -> Result<bool, Mismatch> {
         let before = self.closed.len();
-        self.new.clear();
-        let deep = work.candidates.iter().filter(|candidate| candidate.gap < -self.gap_tolerance).map(|deep| deep.id);
-        self.new.extend(deep.filter(|id| self.closed.binary_search(id).is_err()));
+        self.find_new(model, self.gap_tolerance, work)?;
         if self.new.is_empty() {
             return Ok(false);
         }
-        self.leave_out_what_grazes(model, work)?;
         work.locate(model, &state.q, &self.new, &mut self.start)?;
         for id in &self.new {
             let gap = |candidates: &[Candidate<D>]| find(candidates, *id).map_or(0.0, |candidate| candidate.gap);

@@ -75,6 +75,7 @@ mod factors;
 mod free_velocity;
 mod gap_cubic;
 mod generalized_alpha;
+mod grazing;
 mod laws;
 mod ledger;
 mod matrices;

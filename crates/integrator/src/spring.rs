@@ -18,8 +18,9 @@
 //! U_θ p + ΔV ≤ 0 in both, whatever h and k. As a function of U¹ the impulse falls, and is convex: Newton's method from the
 //! side of compression converges.
 
+use crate::grazing::Grazing;
 use crate::{ImpactLaw, Memory, Mismatch, Model, State, Workspace};
-use teeter_detect::{Anchor, Candidate, Candidates, ContactId, LawId};
+use teeter_detect::{Anchor, BodyId, Candidate, Candidates, ContactId, LawId};
 
 /// A contact's spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -184,6 +185,7 @@ pub(crate) struct Springs<const D: usize> {
     ids: Vec<ContactId>,
     located: Candidates<D>,
     rooms: Vec<f64>,
+    grazing: Grazing<D>,
 }
 
 /// A new contact takes over the spring of one that has ended if it is at least this part of that one's depth inside: where a pressed
@@ -192,6 +194,21 @@ const AS_DEEP: f64 = 0.5;
 
 /// Contacts that are apart by less than this part of their depth act at one point.
 const ONE_POINT: f64 = 1e-2;
+
+/// So many times its depth a corner is at most beside the end of a body when it is found to be over that: up to its depth the end is nearer.
+const BESIDE: f64 = 2.0;
+
+/// How well a new contact can go on for a pressed one; less is better, the first difference decides.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+struct Fit {
+    is_present: bool,
+    /// How far the two are apart, m; 0 where that is one point.
+    beyond_one_point: f64,
+    other_corner: bool,
+    /// Gap of the spring, m.
+    gap: f64,
+    apart: f64,
+}
 
 impl<const D: usize> Springs<D> {
     /// Makes room for so many contacts.
@@ -204,6 +221,7 @@ impl<const D: usize> Springs<D> {
         self.left_out.reserve(2 * contacts);
         self.located.reserve(contacts);
         self.rooms.reserve(contacts);
+        self.grazing.reserve(contacts);
     }
 
     /// Forgets what was found.
@@ -259,11 +277,11 @@ impl<const D: usize> Springs<D> {
         }
         let is_present =
             |(before, room): &(Candidate<D>, f64)| *room >= 0.0 && present.clone().any(|of| of.id == before.id);
-        while let Some((k, j, (is_present, apart))) = self.nearest(memory, is_present) {
+        while let Some((k, j, fit)) = self.nearest(model, memory, is_present) {
             let (heir, room) = self.inside.remove(k);
-            if is_present {
+            if fit.is_present && !comes_back(model, &heir, &self.pressed[j].0, fit.apart) {
                 // Surfaces that meet overlap by rounding: there both are over theirs, at one point.
-                if room < 0.0 || apart <= ONE_POINT * -heir.gap {
+                if room < 0.0 || fit.beyond_one_point == 0.0 {
                     self.left_out.push(heir.id);
                 }
                 continue;
@@ -282,21 +300,30 @@ impl<const D: usize> Springs<D> {
         Ok(())
     }
 
-    /// A new contact and a pressed one that it can go on for, by their numbers: those that have ended before those that are present, and of
-    /// these the two that are nearest to each other, so that a spring goes to the contact at its place.
+    /// A new contact and a pressed one that it can go on for, by their numbers, with how they fit: those that have ended before those that are
+    /// present, and of these the two that are nearest to each other, so that a spring goes to the contact at its place; at one place first to
+    /// the same corner, and first the deepest.
     fn nearest(
         &self,
+        model: &Model<D>,
         memory: &Memory,
         is_present: impl Fn(&(Candidate<D>, f64)) -> bool,
-    ) -> Option<(usize, usize, (bool, f64))> {
-        let mut nearest: Option<(usize, usize, (bool, f64))> = None;
+    ) -> Option<(usize, usize, Fit)> {
+        let mut nearest: Option<(usize, usize, Fit)> = None;
         for (k, (heir, _)) in self.inside.iter().enumerate() {
             for (j, before) in self.pressed.iter().enumerate() {
-                let goes_on = memory.pressed_gap(before.0.id).is_some_and(|gap| heir.gap <= AS_DEEP * gap);
-                let Some(apart) = apart(&heir.sides, &before.0.sides).filter(|_| goes_on) else { continue };
-                let order = (is_present(before), apart);
-                if nearest.is_none_or(|(.., known)| order < known) {
-                    nearest = Some((k, j, order));
+                let gap = memory.pressed_gap(before.0.id).filter(|gap| heir.gap <= AS_DEEP * gap);
+                let (Some(gap), Some(apart)) = (gap, apart(&heir.sides, &before.0.sides)) else { continue };
+                let corner = owner(model, heir);
+                let fit = Fit {
+                    is_present: is_present(before),
+                    beyond_one_point: if apart <= ONE_POINT * -heir.gap { 0.0 } else { apart },
+                    other_corner: corner.is_none() || corner != owner(model, &before.0),
+                    gap,
+                    apart,
+                };
+                if nearest.is_none_or(|(.., known)| fit < known) {
+                    nearest = Some((k, j, fit));
                 }
             }
         }
@@ -323,15 +350,14 @@ impl<const D: usize> Springs<D> {
         work: &mut Workspace<D>,
     ) -> Result<(), Mismatch> {
         work.detect(model, q_free, 0.0)?;
-        let spring = |c: &&Candidate<D>| model.spring(c.law).is_some();
-        let springs = work.candidates.iter().filter(spring);
         self.touched.clear();
-        self.touched.extend(springs.map(|candidate| (candidate.id, 0.0)));
-        if self.touched.is_empty() {
+        self.ids.clear();
+        self.ids.extend(work.candidates.iter().filter(|c| model.spring(c.law).is_some()).map(|candidate| candidate.id));
+        self.grazing.leave_out(model, q_free, 0.0, &mut self.ids, work)?;
+        if self.ids.is_empty() {
             return Ok(());
         }
-        self.ids.clear();
-        self.ids.extend(self.touched.iter().map(|(id, _)| *id));
+        self.touched.extend(self.ids.iter().map(|id| (*id, 0.0)));
         work.detect_with(model, q, 0.0, &self.ids, &mut self.located)?;
         for (id, gap) in &mut self.touched {
             if let Ok(at) = work.candidates.binary_search_by_key(id, |candidate| candidate.id) {
@@ -377,6 +403,21 @@ impl<const D: usize> Springs<D> {
     pub(crate) fn gap(&self, id: ContactId, memory: &Memory) -> f64 {
         self.kept_gap(id, memory).unwrap_or_else(|| self.touches(id).unwrap_or(0.0).max(0.0))
     }
+}
+
+/// Whether a corner takes its spring back from another body's corner below it. Where a block slides from one flush brick to the next, its
+/// corner has left the first some steps before it is over the next: beside that by less than it has sunk in, it is nearer to the brick's
+/// end. The first brick's corner holds the spring meanwhile; if it kept it, the block would sink in once more at each joint.
+fn comes_back<const D: usize>(model: &Model<D>, corner: &Candidate<D>, holder: &Candidate<D>, apart: f64) -> bool {
+    let Some(body) = owner(model, corner) else { return false };
+    let is_below = holder.sides.iter().any(|side| side.body == body) && owner(model, holder) != Some(body);
+    // Not from its own brick's.
+    is_below && corner.id.pair() != holder.id.pair() && apart <= BESIDE * -corner.gap
+}
+
+/// The body whose corner makes a contact, if a sharp one does.
+fn owner<const D: usize>(model: &Model<D>, contact: &Candidate<D>) -> Option<BodyId> {
+    Some(contact.sides[model.detector().fixed_side(contact.id)?].body)
 }
 
 /// How far apart two contacts are on a body that they share, in its coordinates, m; `None` if they share none.

@@ -104,7 +104,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
 }
 
 /// The numbers of the bodies of a contact that move, and not only as prescribed.
-pub(super) fn moving<const D: usize>(model: &Model<D>, contact: &Candidate<D>) -> impl Iterator<Item = usize> {
+pub(crate) fn moving<const D: usize>(model: &Model<D>, contact: &Candidate<D>) -> impl Iterator<Item = usize> {
     let bodies = contact.sides.map(|side| side.body).into_iter();
     bodies.filter(|body| model.moves(*body)).map(|body| body.0 as usize)
 }

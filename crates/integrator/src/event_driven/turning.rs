@@ -59,7 +59,7 @@ impl Smooth {
     ) -> Result<Vector<2>, StepError> {
         let t = self.between[0];
         let is_still = model.owner(candidate.sides[1].body).is_some_and(|(_, part, _)| part.row == 0);
-        if is_still && model.detector().keeps_point(candidate.id) {
+        if is_still && model.detector().fixed_side(candidate.id) == Some(0) {
             return self.stage.bias_at(row, model, q, &self.v).map_err(|source| StepError::Problem { t, source });
         }
         let mut fastest = 0.0_f64;

@@ -1,7 +1,7 @@
 //! When the first open contact of a step touches.
 
 use super::MoreauJeanLocated;
-use crate::closed_step::{SINKING, leaves};
+use crate::closed_step::{SINKING, find, leaves};
 use crate::{ContactStage, Memory, Mismatch, Model, State, StepError, StepSpan, WarmStart, Workspace};
 use teeter_contact::Outcome;
 use teeter_detect::{Candidate, ContactId};
@@ -121,12 +121,11 @@ impl<const D: usize> MoreauJeanLocated<D> {
         work: &mut Workspace<D>,
     ) -> Result<bool, Mismatch> {
         let closed = self.step.closed.len();
-        for k in 0..work.candidates.len() {
-            let Candidate { id, law, gap, .. } = work.candidates[k];
-            let Err(at) = self.step.closed.binary_search(&id) else { continue };
-            if gap >= -tolerance || model.spring(law).is_none() {
-                continue;
-            }
+        self.step.find_new(model, tolerance, work)?;
+        for k in 0..self.step.new.len() {
+            let id = self.step.new[k];
+            let has_spring = find(&work.candidates, id).is_some_and(|deep| model.spring(deep.law).is_some());
+            let Some(at) = self.step.closed.binary_search(&id).err().filter(|_| has_spring) else { continue };
             work.locate(model, &from.q, &[id], &mut self.near)?;
             if self.near.first().is_some_and(|start| start.gap < -tolerance) {
                 self.step.closed.insert(at, id);
@@ -186,13 +185,14 @@ impl<const D: usize> MoreauJeanLocated<D> {
         least: f64,
         work: &mut Workspace<D>,
     ) -> Result<(), Mismatch> {
-        for k in 0..work.candidates.len() {
-            let candidate = work.candidates[k];
-            let id = candidate.id;
-            let known = self.hits.iter().any(|hit| hit.id == id) || self.step.closed.binary_search(&id).is_ok();
-            if candidate.gap >= -tolerance || known || (least > 0.0 && self.pressed_lately(id)) {
+        self.step.find_new(model, tolerance, work)?;
+        for k in 0..self.step.new.len() {
+            let id = self.step.new[k];
+            let known = self.hits.iter().any(|hit| hit.id == id);
+            if known || (least > 0.0 && self.pressed_lately(id)) {
                 continue;
             }
+            let Some(&candidate) = find(&work.candidates, id) else { continue };
             if model.spring(candidate.law).is_some() {
                 // Inside beyond the end of its surface already, it goes on for another one from there on.
                 work.locate_past_ends(model, &from.q, &[id], &mut self.near, &mut self.rooms)?;

@@ -143,7 +143,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         Ok(None)
     }
 
-    /// Whether a contact is inside its surface by more than a tolerance (m) at the time `tau` of the attempt of `h`
+    /// Whether a contact is inside its surface by more than a tolerance (m), and doesn't graze, at the time `tau` of the attempt of `h`
     /// (s), in which velocities change evenly.
     fn is_inside_at(
         &mut self,
@@ -158,7 +158,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
         let detected = work.detect(model, &self.place, 0.0);
         std::mem::swap(&mut work.candidates, &mut self.on_the_way);
         detected?;
-        Ok(find(&self.on_the_way, id).is_some_and(|candidate| candidate.gap < -tolerance))
+        let Self { step, place, on_the_way, .. } = self;
+        step.grazing.is_inside(model, place, (id, tolerance), on_the_way, work)
     }
 
     /// Takes the coordinates at the time `tau` of an attempt that lasted `h` (s), in which velocities change evenly.

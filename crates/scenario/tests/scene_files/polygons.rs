@@ -183,6 +183,43 @@ fn a_block_that_has_sunk_into_a_brick_slides_over_the_next() {
     }
 }
 
+/// A block on springs keeps its depth m g/(2 k), its speed and its angle where it slides over flush bricks: it neither strikes the end of
+/// the next one by what it has sunk in, nor starts at zero depth on that, whichever way it goes and whichever body comes first.
+#[test]
+fn a_block_on_springs_slides_over_flush_bricks_at_its_depth() {
+    let bricks = "[block.brick]\nfixed = true\ndensity = '1000 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.2 m'\nheight = '0.05 m'\n\
+                  position = ['-0.4 m', '-0.025 m']\nrepeat = { count = 5, shift = ['0.2 m', '0 m'] }\n";
+    for (scheme, v, step, is_first) in [
+        ("moreau-jean-located", 0.4, "100 us", true),
+        ("moreau-jean-located", 0.3, "100 us", false),
+        ("moreau-jean-located", -0.4, "100 us", true),
+        ("moreau-jean-located", -2.0, "500 us", false),
+        ("moreau-jean-closed", 0.4, "100 us", true),
+        ("moreau-jean-closed", -0.3, "100 us", false),
+        ("moreau-jean-closed", 2.0, "500 us", true),
+    ] {
+        let block = format!(
+            "[block.b]\ndensity = '2000 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.1 m'\nheight = '0.05 m'\n\
+             position = ['{} m', '0.025 m']\nvelocity = ['{v} m/s', '0 m/s']\n",
+            -0.38 * f64::signum(v)
+        );
+        let bodies = if is_first { format!("{block}{bricks}") } else { format!("{bricks}{block}") };
+        let text = format!(
+            "[time]\nend = '{} s'\nstep = '{step}'\nscheme = '{scheme}'\n[world]\ngravity = '9.81 m/s^2'\n{bodies}\
+             [contact.c]\nbetween = ['b', 'brick-*']\nfriction = 0\nlaw = 'hunt-crossley'\nstiffness = '1e5 N/m'\ndamping = '200 s/m'\nexponent = 1\n",
+            0.7 / v.abs()
+        );
+        let mut simulation = simulation(&text, &[]);
+        run(&mut simulation);
+        let state = &simulation.state;
+        let (depth, expected) = (0.025 - state.q[1], 9.81 / 2e5);
+        let case = format!("{scheme}, {v} m/s, {step}, first: {is_first}");
+        assert!((depth / expected - 1.0).abs() < 1e-3, "{case}: {depth:e} m deep, not {expected:e}");
+        assert!(state.q[2].abs() < 1e-6, "{case}: φ = {:e}", state.q[2]);
+        assert!((state.v[0] / v - 1.0).abs() < 2e-3, "{case}: {} m/s", state.v[0]);
+    }
+}
+
 /// How much further a block slides over flush bricks, onto which it falls from a height, than on one surface, m.
 fn slid_too_far(scheme: &str, height: f64, [width, chamfer, x, v, mu]: [f64; 5]) -> f64 {
     let chamfer = if chamfer > 0.0 { format!("chamfer = '{chamfer} m'\n") } else { String::new() };

@@ -186,21 +186,45 @@ fn summit(t: &[f64], phi: &[f64], top: usize) -> (f64, f64) {
     }
 }
 
-/// Pairs each measured half-cycle with the simulated one of the same side that has most of its time
-/// in common.
+/// Pairs each measured half-cycle with one simulated one of the same side: that whose impact at the end is the pair of its own impact there
+/// ([`pair_impacts`]), else that of the impact at the begin; else the two that have most of their time in common.
 #[must_use]
 pub fn pair_half_cycles(measured: &Swing, simulated: &Swing) -> Vec<HalfCyclePair> {
-    let far = f64::INFINITY;
+    let impacts: Vec<[f64; 2]> = pair_impacts(measured, simulated)
+        .iter()
+        .filter_map(|pair| Some([pair.measured?.t, pair.simulated?.t]))
+        .collect();
+    let are_paired =
+        |t: Option<f64>, other: Option<f64>| t.zip(other).is_some_and(|(t, other)| impacts.contains(&[t, other]));
+    let same_side = |a: &HalfCycle, b: &HalfCycle| a.amplitude * b.amplitude > 0.0;
     let common = |a: &HalfCycle, b: &HalfCycle| {
-        let last = |half: &HalfCycle| half.end.unwrap_or(far).min(1e12);
+        let last = |half: &HalfCycle| half.end.unwrap_or(f64::INFINITY).min(1e12);
         last(a).min(last(b)) - a.begin.max(b.begin)
     };
-    let one = |half: &HalfCycle| {
-        let same_side = simulated.half_cycles.iter().filter(|other| other.amplitude * half.amplitude > 0.0);
-        let best = same_side.max_by(|a, b| common(half, a).total_cmp(&common(half, b)));
-        HalfCyclePair { measured: *half, simulated: best.filter(|best| common(half, best) > 0.0).copied() }
+    let mut partners: Vec<Option<usize>> = vec![None; measured.half_cycles.len()];
+    let mut pair_up = |belong: &dyn Fn(&HalfCycle, &HalfCycle) -> bool| {
+        loop {
+            let mut best: Option<(f64, usize, usize)> = None;
+            for (k, half) in measured.half_cycles.iter().enumerate().filter(|(k, _)| partners[*k].is_none()) {
+                for (j, other) in simulated.half_cycles.iter().enumerate() {
+                    let is_free = same_side(half, other) && !partners.contains(&Some(j));
+                    let shared = common(half, other);
+                    if is_free && belong(half, other) && best.is_none_or(|(most, ..)| shared > most) {
+                        best = Some((shared, k, j));
+                    }
+                }
+            }
+            let Some((_, k, j)) = best else { break };
+            partners[k] = Some(j);
+        }
     };
-    measured.half_cycles.iter().map(one).collect()
+    pair_up(&|a, b| are_paired(a.end, b.end));
+    pair_up(&|a, b| are_paired(Some(a.begin), Some(b.begin)));
+    pair_up(&|a, b| common(a, b) > 0.0);
+    let pairs = measured.half_cycles.iter().zip(&partners);
+    pairs
+        .map(|(half, other)| HalfCyclePair { measured: *half, simulated: other.map(|k| simulated.half_cycles[k]) })
+        .collect()
 }
 
 /// Pairs impacts in their order: each measured one with the nearest simulated one of the same
@@ -307,6 +331,28 @@ mod tests {
         let y: Vec<f64> =
             (0..100).map(|k| (0.1 * (1.0 - 0.02 * f64::from(k))).max(0.0) + 1e-4 * f64::from(k % 3 - 1)).collect();
         assert!(swing(&t, &local_fit(&t, &y, 5), 0..100, 1e-4).crossings.is_empty());
+    }
+
+    #[test]
+    fn no_half_cycle_is_paired_twice() {
+        // The simulated swings are longer: in the end they are out of step by a whole swing.
+        let motion = |half: f64| {
+            let t: Vec<f64> = (0..200).map(|k| f64::from(k) / 165.0).collect();
+            let y: Vec<f64> = t.iter().map(|t| 0.1 * (std::f64::consts::PI * t / half).sin()).collect();
+            swing(&t, &local_fit(&t, &y, 5), 0..t.len(), 0.0)
+        };
+        let (measured, simulated) = (motion(0.1), motion(0.12));
+        let pairs = pair_half_cycles(&measured, &simulated);
+        let begins: Vec<f64> = pairs.iter().filter_map(|pair| Some(pair.simulated?.begin)).collect();
+        assert!(begins.len() >= 8 && begins.windows(2).all(|pair| pair[0] < pair[1]), "{begins:?}");
+        // Each ends with the impact that its own is paired with.
+        let impacts = pair_impacts(&measured, &simulated);
+        for pair in &pairs {
+            let partner = impacts.iter().find(|impact| impact.measured.map(|c| c.t) == pair.measured.end);
+            if let Some(end) = partner.and_then(|impact| impact.simulated) {
+                assert_eq!(pair.simulated.and_then(|half| half.end), Some(end.t), "{pair:?}");
+            }
+        }
     }
 
     #[test]

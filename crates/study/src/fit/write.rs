@@ -169,10 +169,16 @@ impl Shown {
     /// which nothing was sought.
     fn cells(&self, range: Option<(f64, f64)>) -> [String; 3] {
         let Self { value, error, interval: (low, high), unit } = self;
-        let decimals = decimals_of(*error).unwrap_or(5);
+        // A standard error beyond the range tells no digits of the value.
+        let width = range.map_or(f64::INFINITY, |(least, most)| most - least);
+        let decimals = decimals_of(error.min(0.25 * width)).unwrap_or(5);
         let unit = escaped(unit).replace(' ', "\u{a0}");
         let number = |value: f64| fixed(value, decimals);
-        let error = if error.is_finite() { format!("{}{unit}", number(*error)) } else { "–".to_owned() };
+        let error = match *error {
+            error if !error.is_finite() => "–".to_owned(),
+            error if error > width => "more than the range".to_owned(),
+            error => format!("{}{unit}", number(error)),
+        };
         let interval = match range {
             Some((least, most)) if !(*low > least || *high < most) => {
                 format!("all of the range, {} to {}{unit}", power(least), power(most))
@@ -261,11 +267,16 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
         ));
     }
     let short_horizon = fit.until < 0.5 * fit.comparison.trace.end();
-    let cut = if fit.until < fit.comparison.trace.end() { "its horizon" } else { "the end of the run" };
+    let last = fit.comparison.measured.t.last().copied().unwrap_or(f64::INFINITY);
+    let cut = match fit.until {
+        until if last < until => "the last row",
+        until if until < fit.comparison.trace.end() => "its horizon",
+        _ => "the end of the run",
+    };
     texts.push(format!(
         "{}fitted up to t = {:.3} s ({cut}), {} of {} rows{}",
         if short_horizon { "warning: " } else { "" },
-        fit.until,
+        fit.until.min(last),
         fit.rows,
         fit.comparison.measured.t.len(),
         if short_horizon {
@@ -276,9 +287,9 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
     ));
     texts.push("the 95 % intervals hold if the keys that were not varied have the right values".to_owned());
     texts.push(match fit.restarts.get(1) {
-        None => format!("no start led to other values; {} runs were made", fit.evaluations.len()),
+        None => format!("all searches ended at these values; {} runs were made", fit.evaluations.len()),
         Some((_, cost)) => format!(
-            "starts led to {} different values; the second best leave {} times the noise; {} runs were made",
+            "the searches ended at {} different sets of values; the second best leaves {} times the noise; {} runs were made",
             fit.restarts.len(),
             short(cost.sqrt()),
             fit.evaluations.len()

@@ -96,13 +96,19 @@ impl Page<'_> {
         }
         html.push_str(
             "<section id=\"pareto\" class=\"panel\" aria-labelledby=\"pareto-title\"><h2 id=\"pareto-title\">The Pareto front, and what to run for each of its points</h2>\n\
-             <p class=\"note\">Settings that none tried beats in both accuracy and counted work; cheapest first.</p>\n<ol>\n",
+             <p class=\"note\">Settings that none tried beats in both accuracy and counted work; cheapest first, by counted work: measured CPU times may order them otherwise.</p>\n<ol>\n",
         );
         for &number in &self.study.front {
             let row = &self.study.rows[number];
             let time = row.measured().or(row.modelled()).map_or_else(String::new, duration);
             let kind = if row.measured().is_some() { "of CPU time" } else { "by counted work" };
-            let accuracy = row.accuracy().map_or_else(String::new, |error| format!("{} off, ", percent(error)));
+            // No error smaller than that of the reference is known.
+            let bar = self.study.bar();
+            let accuracy = match row.accuracy() {
+                Some(error) if error < bar => format!("less than {} off, ", percent(bar)),
+                Some(error) => format!("{} off, ", percent(error)),
+                None => String::new(),
+            };
             let warned = if row.warned().is_empty() { "" } else { ", with warnings" };
             let _ = writeln!(html, "<li>{accuracy}{time} {kind}{warned}: <code>{}</code></li>", self.command(row));
         }

@@ -222,7 +222,7 @@ pub fn findings(study: &Tradeoff) -> Vec<String> {
 #[must_use]
 pub fn pruning(study: &Tradeoff) -> Vec<String> {
     let stages = (1..).zip(SEARCH_STAGES).map(|(number, description)| format!("stage {number}: {description}"));
-    let axes = study.axes.iter().map(|axis| format!("{} {}", axis.options.len(), axis.name));
+    let axes = study.axes.iter().map(|axis| format!("{} values of {}", axis.options.len(), axis.name));
     let mut texts: Vec<String> = stages.collect();
     texts.push(format!(
         "{} of the {} settings of the full grid ({}) were tried",
