@@ -223,6 +223,12 @@ pub trait ContactDetector<const D: usize>: Send + Sync {
         let _ = id;
         None
     }
+    /// Whether a contact is with a surface where that [comes out](Geometry::summits) beside a base: its place on both
+    /// bodies, and its number among several, follow the surface's shape. The default is `false`.
+    fn is_summit(&self, id: ContactId) -> bool {
+        let _ = id;
+        false
+    }
     /// The pairs that it looks at, as far as they are known before anything moves, so that a model
     /// can refuse what can't work when it is built. By default none are listed, and candidates are
     /// checked as they come.

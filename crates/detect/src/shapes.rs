@@ -450,6 +450,10 @@ impl ContactDetector<2> for ShapeDetector {
         Some(of_sides.map(|normal| apart(&normal)).fold(apart(direction), f64::max))
     }
 
+    fn is_summit(&self, id: ContactId) -> bool {
+        matches!(self.on_side(id), Some((_, _, (OnSide::Summit(_), _))))
+    }
+
     fn fixed_side(&self, id: ContactId) -> Option<usize> {
         if self.on_side(id).is_some() {
             return None;

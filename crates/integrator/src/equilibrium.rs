@@ -22,12 +22,15 @@
 //! step of Newton's method. Each round takes the forces at q; K only guides the iteration, and may
 //! be approximate.
 
+mod summits;
+
 use crate::contact::tangential;
 use crate::mismatch::length;
 use crate::{
-    ContactError, ContactStage, FactorError, Keep, Memory, Mismatch, Model, Over, Responses, Rule, Vector, WarmStart,
-    Weights, Workspace,
+    Contact, ContactError, ContactStage, FactorError, Keep, Memory, Mismatch, Model, Over, Responses, Rule, Vector,
+    WarmStart, Weights, Workspace,
 };
+use summits::Summits;
 use teeter_detect::{Anchor, Candidate, ContactId, Frame, Geometry};
 
 /// Limits of the search.
@@ -174,6 +177,7 @@ pub fn settle<const D: usize>(
         v: vec![0.0; n],
         impulse: vec![0.0; n],
         places: Vec::new(),
+        summits: Summits::default(),
         warm: WarmStart::default(),
         nothing: Memory::default(),
         stage: ContactStage::new(),
@@ -204,7 +208,9 @@ pub fn settle<const D: usize>(
         }
         let last = stalled >= STALLED || round == ROUNDS;
         if change <= ROUNDING || (last && change <= SETTLED) {
-            let forces = pressing().map(|contact| (contact.id, contact.p / tau)).collect();
+            let named = |contact: &Contact<D>| Some((search.summits.identity(contact.id)?, contact.p / tau));
+            let mut forces: Vec<_> = pressing().filter_map(named).collect();
+            forces.sort_unstable_by_key(|(id, _)| *id);
             search.go_on(model, tau);
             let penetration = work.penetration(model, &search.q)?;
             return Ok(Equilibrium { q: search.q, forces, rounds: round, change, tau, penetration });
@@ -272,6 +278,7 @@ struct Search<const D: usize> {
     /// All impulses of a round: (M + τ²K) v, except those that hold driven velocities.
     impulse: Vec<f64>,
     places: Vec<Place<D>>,
+    summits: Summits<D>,
     warm: WarmStart,
     nothing: Memory,
     stage: ContactStage<D>,
@@ -309,6 +316,7 @@ impl<const D: usize> Search<D> {
             factor.solve(v);
         }
         work.detect(model, &self.q, limits.margin)?;
+        self.summits.exchange(model, &self.q, limits.margin, &mut work.candidates);
         self.stage.clear();
         for candidate in &work.candidates {
             let i = self.stage.len();

@@ -201,10 +201,11 @@ const BESIDE: f64 = 2.0;
 /// How well a new contact can go on for a pressed one; less is better, the first difference decides.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 struct Fit {
+    /// Whether the two are of different corners, or not at one point.
+    is_another: bool,
     is_present: bool,
     /// How far the two are apart, m; 0 where that is one point.
     beyond_one_point: f64,
-    other_corner: bool,
     /// Gap of the spring, m.
     gap: f64,
     apart: f64,
@@ -300,9 +301,9 @@ impl<const D: usize> Springs<D> {
         Ok(())
     }
 
-    /// A new contact and a pressed one that it can go on for, by their numbers, with how they fit: those that have ended before those that are
-    /// present, and of these the two that are nearest to each other, so that a spring goes to the contact at its place; at one place first to
-    /// the same corner, and first the deepest.
+    /// A new contact and a pressed one that it can go on for, by their numbers, with how they fit: those of one corner before all others, those that
+    /// have ended before those that are present, and of these the two that are nearest to each other, so that a spring goes to the contact at
+    /// its place; at one place first the deepest.
     fn nearest(
         &self,
         model: &Model<D>,
@@ -315,13 +316,9 @@ impl<const D: usize> Springs<D> {
                 let gap = memory.pressed_gap(before.0.id).filter(|gap| heir.gap <= AS_DEEP * gap);
                 let (Some(gap), Some(apart)) = (gap, apart(&heir.sides, &before.0.sides)) else { continue };
                 let corner = owner(model, heir);
-                let fit = Fit {
-                    is_present: is_present(before),
-                    beyond_one_point: if apart <= ONE_POINT * -heir.gap { 0.0 } else { apart },
-                    other_corner: corner.is_none() || corner != owner(model, &before.0),
-                    gap,
-                    apart,
-                };
+                let beyond_one_point = if apart <= ONE_POINT * -heir.gap { 0.0 } else { apart };
+                let is_same = corner.is_some() && corner == owner(model, &before.0) && beyond_one_point == 0.0;
+                let fit = Fit { is_another: !is_same, is_present: is_present(before), beyond_one_point, gap, apart };
                 if nearest.is_none_or(|(.., known)| fit < known) {
                     nearest = Some((k, j, fit));
                 }

@@ -267,16 +267,18 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
         ));
     }
     let short_horizon = fit.until < 0.5 * fit.comparison.trace.end();
-    let last = fit.comparison.measured.t.last().copied().unwrap_or(f64::INFINITY);
+    let t = &fit.comparison.measured.t;
+    let (first, last) = t.first().zip(t.last()).map_or((0.0, f64::INFINITY), |(first, last)| (*first, *last));
+    let ends_before = last + (last - first) / t.len() as f64 <= fit.until;
     let cut = match fit.until {
-        until if last < until => "the last row",
+        _ if ends_before => "the last row",
         until if until < fit.comparison.trace.end() => "its horizon",
         _ => "the end of the run",
     };
     texts.push(format!(
         "{}fitted up to t = {:.3} s ({cut}), {} of {} rows{}",
         if short_horizon { "warning: " } else { "" },
-        fit.until.min(last),
+        if ends_before { last } else { fit.until },
         fit.rows,
         fit.comparison.measured.t.len(),
         if short_horizon {

@@ -154,14 +154,17 @@ impl Line {
         let rise = |x: f64| beam.deflection_at(q, x).map_or(0.0, |d| direction.y.signum() * (d.slope - level));
         let nodes = beam.nodes();
         let first = nodes.partition_point(|node| *node <= low).max(1);
-        let mut at_node = None;
+        let mut left = None;
         for two in nodes[first - 1..].windows(2).take_while(|two| two[0] < high) {
             let (from, to) = (two[0].max(low), two[1].min(high));
-            let (start, end) = (at_node.unwrap_or_else(|| rise(from)), rise(to));
-            at_node = Some(end);
-            if let Some(t) = falls_through_zero([start, rise(0.5 * (from + to)), end])
-                && let Some(point) = self.at(beam, q, from + t * (to - from))
-            {
+            // The slope of a beam that shears has a kink at a node under a force or a mass: what counts is that on this side.
+            let begin = from + EDGE * (to - from);
+            let length = to - from - 2.0 * (begin - from);
+            let [start, middle, end] = [0.0, 0.5, 1.0].map(|t| rise(begin + t * length));
+            let kink = (start <= 0.0 && left.is_some_and(|left| left > 0.0)).then_some(from);
+            let fall = falls_through_zero([start, middle, end]).map(|t| begin + t * length);
+            left = Some(end);
+            for point in [kink, fall].into_iter().flatten().filter_map(|x| self.at(beam, q, x)) {
                 each(point);
             }
         }
@@ -193,6 +196,9 @@ fn normal_of(slope: f64) -> Vector2<f64> {
     let cos = (1.0 + slope * slope).sqrt().recip();
     Vector2::new(-slope * cos, cos)
 }
+
+/// Slopes at a node are taken this part of an element beside it.
+const EDGE: f64 = 1e-9;
 
 /// Where in (0, 1] a parabola with these values at 0, ½ and 1 goes from above zero to below.
 fn falls_through_zero([start, middle, end]: [f64; 3]) -> Option<f64> {
