@@ -104,7 +104,7 @@ mod tests {
         let means = normal(&curves, &forces, window(&curves)).unwrap();
         for (mean, t) in means.iter().zip(curves.borders()) {
             // To a bucket of two steps.
-            let expected = if t < 0.296 || t > 0.704 { 0.0..=0.0 } else { 2.5..=3.7 };
+            let expected = if (0.296..=0.704).contains(&t) { 2.5..=3.7 } else { 0.0..=0.0 };
             let edge = (t - 0.3).abs() < 0.005 || (t - 0.7).abs() < 0.005;
             assert!(edge || expected.contains(mean), "{mean} at {t}");
         }
