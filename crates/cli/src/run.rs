@@ -327,7 +327,7 @@ fn format_summary(summary: &Summary, folder: &Path, horizon: bool, report: bool)
         text.push_str(&format!("  {identity}\n"));
     } else {
         text.push_str(&format!(
-            "  {}{}, {}, deepest penetration of a corner {}, {identity}\n",
+            "  {}{}, {}, deepest penetration {}, {identity}\n",
             count(summary.impact_count, "impact"),
             if summary.reclosure_count > 0 {
                 format!(" and {}", count(summary.reclosure_count, "re-closure"))

@@ -717,7 +717,11 @@ fn what_slides_back_is_told_with_how_far_it_was() {
     // v²/(2 a) with a = 0.4 g, to the steps of a first-order scheme.
     assert!((farthest - 1.0 / (2.0 * 0.4 * 9.81)).abs() < 1e-3, "{of}");
     let headline = ran.summary["headline"].as_str().unwrap();
-    assert!(headline.contains(" after up to 12") && headline.contains("mm to the right so far"), "{headline}");
+    assert!(headline.contains("slid 12") && headline.contains("mm to the right, then back to "), "{headline}");
+    assert!(headline.ends_with("mm right of its start so far"), "{headline}");
+    // From the turning point on with 0.2 g, for what is left of 0.5 s.
+    let turned_at = 1.0 / (0.4 * 9.81);
+    assert!((of["speed"].as_f64().unwrap() - 0.2 * 9.81 * (0.5 - turned_at)).abs() < 3e-3, "{of}");
 }
 
 #[test]
@@ -743,4 +747,37 @@ fn a_stone_still_on_a_beam_that_rings_under_it_rests() {
     let ran = scenario("lintel", "verdict-lintel", &["time.end=\"0.6 s\"", "beam.lintel.elements=16"]);
     let headline = ran.summary["headline"].as_str().unwrap();
     assert!(headline.starts_with("all 3 blocks came to rest"), "{headline}");
+}
+
+#[test]
+fn a_block_on_springs_vibrates_when_it_no_longer_leaves_them() {
+    let ran = scenario("compliant-drop", "verdict-springs", &[]);
+    assert_eq!(ran.summary["headline"], "`box` is still vibrating on its contacts");
+    // While flights go on it bounces.
+    let early = scenario("compliant-drop", "verdict-springs-early", &["time.end=\"0.3 s\""]);
+    assert_eq!(early.summary["headline"], "`box` is still bouncing");
+}
+
+#[test]
+fn what_never_moved_did_not_come_to_rest() {
+    let ran = scenario("newtons-cradle", "verdict-cradle", &[]);
+    let headline = ran.summary["headline"].as_str().unwrap();
+    assert!(headline.starts_with("1 of 5 blocks came to rest at t = 101 ms; 3 stood still throughout"), "{headline}");
+}
+
+#[test]
+fn a_block_that_rolls_over_sides_is_told_with_its_turns_and_on_what_it_rests() {
+    let cube = ROCKER.replace("3 cm", "10 cm").replace("height = '13.5 cm'", "height = '10 cm'");
+    let text = format!("{TIME}[ground]\n{cube}velocity = ['4 m/s', '0 m/s']\nspin = '-40 rad/s'\n{FLOOR}")
+        .replace("friction = 0.5", "friction = 0.9\nrestitution = 0.4");
+    let ran = scene("rolls-over", &text);
+    let headline = ran.summary["headline"].as_str().unwrap();
+    let phi = ran.column("b.phi");
+    let turns = (phi.last().unwrap() - phi[0]).abs() / std::f64::consts::TAU;
+    let told = if turns < 2.0 {
+        format!(", turned by {:.0}° in all", 360.0 * turns)
+    } else {
+        format!(", made {turns:.2} turns in all").replace("0 turns", " turns")
+    };
+    assert!(turns > 0.4 && headline.contains(&told), "{turns}: {headline}");
 }

@@ -132,15 +132,21 @@ impl Series {
     }
 
     /// Whether a line stays within `tolerance` (in y) of another one at all of its points, which are
-    /// at the same x.
+    /// at the same x, or hides it at half of them: there within the tolerance, and away from 0.
     fn lies_on(&self, other: &Self, tolerance: f64) -> bool {
+        let pairs = || self.points.iter().zip(&other.points);
+        let near = |a: &(f64, f64), b: &(f64, f64)| (a.1 - b.1).abs() <= tolerance;
+        let hidden = || pairs().filter(|(a, b)| near(a, b) && a.1.abs() > tolerance).count();
         self.drawn == Drawn::Line
             && other.drawn == Drawn::Line
+            && self.faint == other.faint
             && self.points.len() == other.points.len()
-            && self.points.iter().zip(&other.points).all(|(a, b)| a.0 == b.0 && (a.1 - b.1).abs() <= tolerance)
+            && pairs().all(|(a, b)| a.0 == b.0)
+            && (pairs().all(|(a, b)| near(a, b)) || 2 * hidden() > self.points.len())
     }
 
-    /// Dashes each line that lies within `tolerance` of an earlier one: that one shows in the gaps. Of several on each other each later
+    /// Dashes each line that lies within `tolerance` of an earlier one, or does so for half of its length away from 0: that one shows in the
+    /// gaps. Of several on each other each later
     /// one has shorter dashes.
     pub(crate) fn tell_apart(lines: &mut [Self], tolerance: f64) {
         for k in 1..lines.len() {
@@ -193,6 +199,21 @@ mod tests {
         // The third lies on the second alone, which has dashes already.
         let dashes = [Dash::ByNumber, Dash::Over(1, 2), Dash::Over(2, 2), Dash::ByNumber];
         assert_eq!(lines.each_ref().map(|line| line.dash), dashes);
+    }
+
+    #[test]
+    fn a_line_that_leaves_another_one_is_dashed_if_it_lies_on_it_for_half_of_its_length() {
+        let leaves = |at: i32, level: f64| {
+            let line = |way: f64| {
+                (0..10).map(move |k| (f64::from(k), level + if k < at { 0.0 } else { way * f64::from(k - at + 1) }))
+            };
+            let mut lines = [Series::line("", line(1.0)), Series::line("", line(-1.0))];
+            Series::tell_apart(&mut lines, 0.1);
+            lines[1].dash
+        };
+        assert_eq!((leaves(7, 5.0), leaves(3, 5.0)), (Dash::Over(1, 1), Dash::ByNumber));
+        // At 0 both are often, and hide nothing that matters.
+        assert_eq!(leaves(7, 0.0), Dash::ByNumber);
     }
 
     #[test]

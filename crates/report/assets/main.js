@@ -55,22 +55,23 @@
   const overTheRaw = (lines, means) =>
     [...lines.filter(({ raw }) => raw), ...[...lines.filter(({ raw }) => !raw), ...means].sort((a, b) => a.index - b.index)];
 
-  /** Where the peaks of impacts would dwarf all else: the size to cut them at. Of means it depends on the time over which they are taken. */
-  function cutOf(series, least, over) {
+  /** Where peaks would dwarf all else: the size to cut them at. */
+  function cutOf(series, least) {
     const sizes = series.flatMap(({ y }) => y.map(Math.abs).filter((f) => f > least)).sort((a, b) => a - b);
     const [usual, largest] = [sizes[Math.floor(0.9 * sizes.length)], sizes[sizes.length - 1]];
-    return largest > 6 * usual ? { limit: 3 * usual, largest, over } : undefined;
+    return largest > 6 * usual ? { limit: 3 * usual, largest } : undefined;
   }
 
   const strongest = Math.max(1e-300, ...forces.points.map(({ normal }) => normal.reduce((most, f) => Math.max(most, f), 0)));
   const scaled = (values, factor) => values.map((f) => (f === null ? null : f * factor));
   const active = scenery.contacts.map((_, k) => k).filter((k) => forces.points.some((point) => point.contact === k));
   const nameOf = ({ block, surface }) => `${scenery.blocks[block].name} on ${surface}`;
-  /** The contacts that paper has room for: those with the largest forces, in their order. */
-  const strongestContacts = () => {
-    const most = (k) => forces.points.filter(({ contact }) => contact === k)
-      .reduce((size, { normal }) => normal.reduce((largest, x) => Math.max(largest, x ?? 0), size), 0);
-    const kept = [...active].sort((a, b) => most(b) - most(a)).slice(0, 8);
+  /** The contacts with the hardest impacts, then those with the largest forces, in their order. */
+  const strongestContacts = (count) => {
+    const most = (k, key) => forces.points.filter((point) => point.contact === k && point[key])
+      .reduce((size, point) => point[key].reduce((largest, x) => Math.max(largest, x ?? 0), size), 0);
+    const kept = [...active]
+      .sort((a, b) => most(b, "impacts") - most(a, "impacts") || most(b, "normal") - most(a, "normal")).slice(0, count);
     return active.filter((k) => kept.includes(k));
   };
   // So many that one would look for them: one at a time.
@@ -86,25 +87,36 @@
     const points = forces.points.filter((point) => point.contact === k);
     if (!points.length) return;
     const suffix = scenery.contacts.length > 1 ? `, ${nameOf(contact)}` : "";
-    const series = (key, factor) => points.map((point) =>
-      ({ label: contact.points[point.point].label, index: point.point, t: forces.borders, y: scaled(point[key], factor), stepped: true }));
+    const strikes = points.filter(({ impacts }) => impacts);
+    const springs = forces.springs?.includes(k);
+    // Colours are for those that touch: of all there would be too many.
+    const series = (key, factor, of = points) => of.map((point) =>
+      ({ label: contact.points[point.point].label, index: points.indexOf(point), t: forces.borders, y: scaled(point[key], factor), stepped: true }));
     for (const [i, [key, title]] of [["normal", "Normal force"], ["tangential", "Tangential force"]].entries()) {
-      if (key === "tangential" && forces.frictionless.includes(k)) continue;
+      if (key === "tangential" ? forces.frictionless.includes(k) : forces.forceless?.includes(k)) continue;
       const [prefix, factor] = forces.units[k][i];
       const lines = series(key, factor);
       const means = key === "normal" ? points.filter(({ mean }) => mean).map((point) =>
-        ({ label: contact.points[point.point].label, index: point.point, t: forces.borders, y: scaled(point.mean, factor) })) : [];
+        ({ label: contact.points[point.point].label, index: points.indexOf(point), t: forces.borders, y: scaled(point.mean, factor) })) : [];
       for (const line of lines) line.raw = means.some(({ index }) => index === line.index);
       const least = 1e-6 * strongest * factor;
       plots.add({
-        id: `${key}-${k}`, contact: k, title: title + suffix, unit: `${prefix}N`, series: overTheRaw(lines, means), cut: cutOf(lines, least, forces.bucket), floor: 0, least, height: 150,
+        id: `${key}-${k}`, contact: k, title: title + suffix, unit: `${prefix}N`, series: overTheRaw(lines, means), cut: springs ? undefined : cutOf(lines, least), floor: 0, least, height: 150,
       });
-      if (means.length) {
-        htmlElement("p", "note", `Pale: raw, the mean of each step or of a few. Strong: the mean over ${forces.window}.`, byId(`panel-${key}-${k}`));
+      const over = `means over ${forces.bucket}${strikes.length ? " without the impacts" : ""}`;
+      htmlElement("p", "note", means.length ? `Pale: ${over}. Strong: over ${forces.window}.` : `M${over.slice(1)}.`, byId(`panel-${key}-${k}`));
+      if (key === "tangential" && forces.shares?.includes(k)) {
+        htmlElement("p", "note", "Of points that stick, equilibrium decides only the sum of the tangential forces: how they share it is one of many ways.", byId(`panel-${key}-${k}`));
       }
       if (forces.redundant?.includes(k)) {
         htmlElement("p", "note", "Equilibrium alone doesn't decide these forces: of rigid bodies that are held more than they need be, they are one of many sets that keep them in balance.", byId(`panel-${key}-${k}`));
       }
+    }
+    if (strikes.length) {
+      const [prefix, factor] = forces.impulse_unit;
+      plots.add({
+        id: `impacts-${k}`, contact: k, title: `Normal impulse of impacts${suffix}`, unit: `${prefix}N s`, series: series("impacts", factor, strikes), floor: 0, least: 1e-300, height: 110,
+      });
     }
     plots.add({
       id: `state-${k}`, contact: k, title: `Contact state${suffix}`, series: [],
@@ -121,7 +133,11 @@
   }
 
   addPanels(true);
-  if (active.length > 3) plots.choose(active[0]);
+  if (active.length > 3) {
+    const hardest = strongestContacts(1)[0];
+    byId("choice").querySelector("select").value = hardest;
+    plots.choose(hardest);
+  }
   const note = htmlElement("p", "note", undefined, byId("panel-works") ?? byId("panel-energy") ?? byId("plots"));
   note.append("Of the energy identity, the worst step leaves ");
   note.append(byId("residual").content.cloneNode(true), " of the scene's energy unexplained.");
@@ -149,6 +165,7 @@
   const decimals = Math.min(9, Math.max(3, Math.ceil(-Math.log10(data.dt))));
   /** The first few blocks that are free to move, by name and number. */
   const readOut = scenery.blocks.map(({ name }, k) => [name, k]).filter(([, k]) => !scenery.blocks[k].driven).slice(0, 4);
+  const unread = scenery.blocks.filter(({ driven }) => !driven).length - readOut.length;
   let frame = 0;
   /** Where between the pictures the clock is. */
   let position = 0;
@@ -167,6 +184,7 @@
     byId("time-readout").dataset.t = t;
     const angles = (crowd ? [] : readOut)
       .map(([name, k]) => `${several ? `${name}: ` : ""}φ = ${hundredths(frames.blocks[k].phi[frame] * degrees)}°`);
+    if (angles.length && unread > 0) angles.push(`… ${unread} more`);
     byId("scene-readout").replaceChildren();
     angles.forEach((text, k) => {
       byId("scene-readout").append(k ? " · " : "");
@@ -345,7 +363,7 @@
 
   function sayKey(exaggerated = factors[Number(exaggeration.value)]) {
     const parts = [];
-    if (how.value === "arrows" && forces.points.length) parts.push("Green arrows: the contact's force on the block, mean since the sample before.");
+    if (how.value === "arrows" && forces.points.length) parts.push("Green arrows: the contact's force on the block, mean since the sample before, without impacts.");
     if (how.value === "network") {
       parts.push(`Green lines: contact forces, from centre to centre through the centre of pressure, means since the picture before; widest: ${withPrefix(chains.usual, "N")} or more.`);
     }
@@ -423,7 +441,7 @@
       htmlElement("figcaption", "", `${byId("time-readout").textContent} ${byId("scene-readout").textContent}`, figure);
     }
     show(printed.frame);
-    if (active.length > 3) plots.choose(...strongestContacts());
+    if (active.length > 3) plots.choose(...strongestContacts(8)); // So many have room on paper.
     // Paper has its own width; drawn for that of the screen, the plots' type would come out too small or too large.
     plots.drawFor(680);
   });

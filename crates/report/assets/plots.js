@@ -60,8 +60,12 @@ const plots = (() => {
     if (panel.cut) {
       const toggle = htmlElement("button", "link", "", row);
       toggle.type = "button";
+      const cut = `peaks cut, up to ${number(panel.cut.largest, 3)} ${panel.unit}`;
+      // Paper has no buttons, but the same axis.
+      const printed = htmlElement("span", "on-paper", "", row);
       const say = () => {
-        toggle.textContent = panel.whole ? "cut the peaks" : `peaks cut, up to ${number(panel.cut.largest, 3)} ${panel.unit}${panel.cut.over ? ` over ${panel.cut.over}` : ""}: show all`;
+        toggle.textContent = panel.whole ? "cut the peaks" : `${cut}: show all`;
+        printed.textContent = panel.whole ? "" : cut;
       };
       toggle.addEventListener("click", () => {
         panel.whole = !panel.whole;
@@ -87,12 +91,16 @@ const plots = (() => {
   const largestOf = ({ series, cut }) => Math.min(cut?.limit ?? Infinity, series.reduce((most, { y, upper }) => [y, upper ?? []].reduce((largest, values) =>
     values.reduce((size, x) => Math.max(size, Math.abs(x ?? 0) || 0), largest), most), 0));
 
-  /** Dashes a line that lies on earlier ones, which then show in the gaps: within 1 % of what the panel shows. */
-  function tellApart({ series }) {
+  /** Dashes a line that lies on earlier ones, which then show in the gaps: within 1 % of what the panel shows, all along or for half of its length away from 0. */
+  function tellApart({ series, cut }) {
     const finite = series.flatMap(({ y }) => y.filter((x) => x !== null && Number.isFinite(x)));
     const [low, high] = finite.reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
-    const near = (a, b) => a.t === b.t && !a.upper && !b.upper && a.raw === b.raw && a.y.length === b.y.length
-      && a.y.every((x, i) => Math.abs(x - b.y[i]) <= 0.01 * (high - low));
+    const within = 0.01 * Math.min(high - low, 2 * (cut?.limit ?? Infinity));
+    const near = (a, b) => {
+      if (a.t !== b.t || a.upper || b.upper || a.raw !== b.raw || a.y.length !== b.y.length) return false;
+      const same = a.y.map((x, i) => Math.abs(x - b.y[i]) <= within);
+      return same.every(Boolean) || 2 * same.filter((is, i) => is && Math.abs(a.y[i]) > within).length > same.length;
+    };
     series.forEach((line, k) => { line.over = series.slice(0, k).reduce((most, earlier) => (near(line, earlier) ? Math.max(most, earlier.over + 1) : most), 0); });
     const most = Math.max(0, ...series.map(({ over: lines }) => lines));
     series.forEach((line) => { line.mostOver = most; });

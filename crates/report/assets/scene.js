@@ -679,7 +679,7 @@ const scene = (() => {
     else if (chains) chains.clear(layers.network);
     drawLoads(at);
     layers.arrows.replaceChildren();
-    if (at > 0 && drawn === "arrows") {
+    if (drawn === "arrows") {
       for (const point of forces.points) {
         const [n, s] = [point.normal, point.tangential].map((y) => valueAt({ t: forces.borders, y, stepped: true }, t));
         if (n > 0) {

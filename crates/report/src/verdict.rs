@@ -16,7 +16,7 @@ use carrier::Carrier;
 use falling::Joints;
 pub(crate) use going::Going;
 use going::Touched;
-pub(crate) use headline::headline;
+pub(crate) use headline::{headline, percent};
 pub use lying::Side;
 use serde::{Deserialize, Serialize};
 use stance::{Edge, Outline, Stance};
@@ -39,7 +39,7 @@ const TUMBLED: f64 = 0.75 * std::f64::consts::PI;
 const SLID: f64 = 0.01;
 
 /// A block rocks, in a word, if it got to this part of its critical angle.
-const ROCKED: f64 = 0.01;
+pub(crate) const ROCKED: f64 = 0.01;
 
 /// What ended a run before its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -113,6 +113,9 @@ pub struct BodyVerdict {
     /// The farthest that it was from where it stood, of one that slid back from there, m; to the right positive.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub farthest: Option<f64>,
+    /// How fast it moves at the end relative to what carries it, m/s; of one that slides on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed: Option<f64>,
     /// The largest |φ|/α.
     pub max_phi_over_alpha: Option<f64>,
     /// The last peak of its rocking, rad; of one that did not cross zero yet the largest angle.
@@ -136,6 +139,12 @@ pub struct BodyVerdict {
     /// Of a block that began in flight, turned over and settled: by how much it has turned at the end, rad.
     #[serde(skip)]
     pub(crate) tumbled: Option<f64>,
+    /// Of a block that overturned: by how much it has turned at the end, rad, if that is more than to the next side.
+    #[serde(skip)]
+    pub(crate) turned: Option<f64>,
+    /// Of a block that rests: whether what carries it moves at the end.
+    #[serde(skip)]
+    pub(crate) is_carried: bool,
     /// How it moves at the end, of one that does and has no other fate.
     #[serde(skip)]
     pub(crate) going: Option<Going>,
@@ -218,6 +227,8 @@ struct Watched {
     outline: Option<Outline>,
     /// Largest distance of a point of it from the mass centre, m.
     reach: f64,
+    /// Whether a contact of it has springs.
+    on_springs: bool,
     /// Whether it rolls on a round outline.
     is_round: bool,
     /// Its least width, m.
@@ -249,6 +260,10 @@ impl Watch {
                 outline: Outline::of(block, scene.gravity),
                 reach,
                 is_round: corners.len() < 3,
+                on_springs: scene.contacts.iter().any(|contact| {
+                    let is_of = contact.block == number || contact.other_block() == Some(number);
+                    is_of && contact.law.impact.has_duration()
+                }),
                 thickness: falling::thickness(block),
                 still_speed: STILL * (gravity * reach).sqrt(),
                 still_time: (reach / gravity).sqrt(),
@@ -564,10 +579,24 @@ impl Seen {
             lies_on,
             farthest: slid.and_then(|slid| self.farthest(slid, SLID * base)),
             slid,
+            speed: (what == Fate::Slid && rests.is_none() && self.still.is_none()).then(|| {
+                let [vx, vy, _] = watched.velocity(layout, number, state);
+                vx.hypot(vy)
+            }),
             max_phi_over_alpha: self.part,
             last_peak: peak.filter(|_| what == Fate::Rocks).map(|peak| peak.phi),
             still_from: self.still.filter(|_| rests.is_none()),
             stands_from: self.stands_from,
+            turned: self
+                .began
+                .filter(|_| what == Fate::Overturned)
+                .map(|began| (self.angle - began).abs())
+                .filter(|turn| *turn >= TUMBLED),
+            is_carried: rests.is_some() && {
+                let q = &state.q[layout.blocks[number].range.clone()];
+                let [vx, vy, spin] = watched.carrier.base_velocity([q[0], q[1]], layout, state);
+                vx.hypot(vy) + watched.reach * spin.abs() > watched.still_speed
+            },
             tumbled: tumbled.filter(|turn| turn.abs() >= TUMBLED && what != Fate::Overturned),
             on_its_way: on_its_way.map(|_| tilt),
             going: (what == Fate::Moves && self.still.is_none())

@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | x, y of a body, with its velocity | how far it goes from where it began | the largest distance from its mass centre to its outline |
 //! | φ of a body, with its velocity | how far it turns from where it began | 1 rad |
-//! | slip of a contact | its largest value | 100 times that of its block: rounding adds up over the steps |
+//! | slip of a contact | its largest value | 100 times that of its block, 10 000 times where it never slips by its state: rounding adds up over the steps |
 //! | deflection of a beam | its largest value | a thousandth of the span |
 //! | force in contacts, or in beams | its largest value | the largest force of the contacts, or of the beams |
 //! | moment or couple in a beam | its largest value | the largest force of the beams times the span, or the largest moment |

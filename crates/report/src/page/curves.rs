@@ -38,32 +38,57 @@ impl Extremes {
     }
 }
 
+/// What an impulse is of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Of {
+    /// A force over the step.
+    Force,
+    /// An impact, in a step of this length, s: it isn't the longer for a longer step, and no force.
+    Impact { lasting: f64 },
+}
+
 /// What a contact did in a bucket.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 struct Work {
+    /// Of the steps without an impact.
     impulse: [f64; 2],
+    /// Of those with one, how long these took, s, and the largest normal one of a step.
+    struck: [f64; 2],
+    struck_for: f64,
+    hardest: f64,
     /// Tangential displacement while it pressed, m, from the start of the run to the end of the bucket.
     slip: f64,
-    /// Steps with each state; the rest it was open.
+    /// Steps in which it pressed, by state.
     sticking: u64,
     slipping: u64,
 }
 
 impl Work {
     fn join(self, later: Self) -> Self {
-        let impulse = [self.impulse[0] + later.impulse[0], self.impulse[1] + later.impulse[1]];
+        let sum = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
         Self {
-            impulse,
+            impulse: sum(self.impulse, later.impulse),
+            struck: sum(self.struck, later.struck),
+            struck_for: self.struck_for + later.struck_for,
+            hardest: self.hardest.max(later.hardest),
             slip: later.slip,
             sticking: self.sticking + later.sticking,
             slipping: self.slipping + later.slipping,
         }
     }
 
-    fn enter(&mut self, impulse: [f64; 2], state: ContactState, slip: f64) {
+    fn enter(&mut self, impulse: [f64; 2], of: Of, state: ContactState, slip: f64) {
         self.slip += slip;
-        self.impulse[0] += impulse[0];
-        self.impulse[1] += impulse[1];
+        let sum = match of {
+            Of::Force => &mut self.impulse,
+            Of::Impact { lasting } => {
+                self.struck_for += lasting;
+                self.hardest = self.hardest.max(impulse[0]);
+                &mut self.struck
+            }
+        };
+        sum[0] += impulse[0];
+        sum[1] += impulse[1];
         match state {
             ContactState::Open => {}
             ContactState::Stick => self.sticking += 1,
@@ -84,6 +109,9 @@ struct Bucket {
     steps: u64,
 }
 
+/// Less than this part of a bucket is rounding of times: all of its steps had impacts.
+const NO_REST: f64 = 1e-6;
+
 /// The curves of a run.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Curves {
@@ -102,14 +130,18 @@ pub(crate) struct Curves {
 /// A contact point over time, a value a bucket.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ForceCurve {
-    /// Mean normal force, N.
+    /// Mean normal force, N, without the steps in which there were impacts, unless there are no others.
     pub(crate) normal: Vec<f64>,
-    /// Mean tangential force, N.
+    /// Mean tangential force, N, alike.
     pub(crate) tangential: Vec<f64>,
     /// Tangential displacement while it pressed, from the start to the end of the bucket, m.
     pub(crate) slip: Vec<f64>,
-    /// The state in most of the steps; of a bucket in which it begins to press, the one in which it does.
+    /// The state in most of the steps in which it presses, however few these are.
     pub(crate) state: Vec<ContactState>,
+    /// The state in most of the steps, of those in which it is open, too.
+    pub(crate) usual: Vec<ContactState>,
+    /// The largest normal impulse in a step with an impact, N·s; empty without any.
+    pub(crate) impacts: Vec<f64>,
 }
 
 impl ForceCurve {
@@ -175,10 +207,10 @@ impl Curves {
 
     /// Adds what a contact did in the step entered last: impulse, state, and by how much it slipped, m.
     #[inline]
-    pub(crate) fn add(&mut self, contact: usize, impulse: [f64; 2], state: ContactState, slip: f64) {
+    pub(crate) fn add(&mut self, contact: usize, impulse: [f64; 2], of: Of, state: ContactState, slip: f64) {
         let newest = self.works.len().saturating_sub(self.contacts);
         if let Some(work) = self.works[newest..].get_mut(contact) {
-            work.enter(impulse, state, slip);
+            work.enter(impulse, of, state, slip);
         }
     }
 
@@ -277,32 +309,43 @@ impl Curves {
         self.buckets.iter().map(|bucket| bucket.last - bucket.begin).fold(0.0, f64::max)
     }
 
+    /// How long a step is, s.
+    pub(crate) fn step(&self) -> f64 {
+        self.buckets.iter().map(|bucket| (bucket.last - bucket.begin) / bucket.steps as f64).fold(0.0, f64::max)
+    }
+
     /// A contact over time; `None` if it never carried anything.
     pub(crate) fn forces(&self, contact: usize) -> Option<ForceCurve> {
         let works = || self.works.iter().skip(contact).step_by(self.contacts.max(1));
-        if works().all(|work| work.impulse == [0.0; 2]) {
+        if works().all(|work| work.impulse == [0.0; 2] && work.struck == [0.0; 2]) {
             return None;
         }
         let mean = |k: usize| {
-            works().zip(&self.buckets).map(|(work, bucket)| work.impulse[k] / (bucket.last - bucket.begin)).collect()
+            let of_bucket = |(work, bucket): (&Work, &Bucket)| {
+                let duration = bucket.last - bucket.begin;
+                let rest = duration - work.struck_for;
+                if rest > NO_REST * duration {
+                    work.impulse[k] / rest
+                } else {
+                    (work.impulse[k] + work.struck[k]) / duration
+                }
+            };
+            works().zip(&self.buckets).map(of_bucket).collect()
         };
-        let mut touched = false;
-        let state = works().zip(&self.buckets).map(|(work, bucket)| {
-            let pressing = work.sticking + work.slipping;
-            let open = bucket.steps.saturating_sub(pressing);
-            // A touch shorter than a bucket is seen all the same: by that in which it begins.
-            let begins = !touched && pressing > 0;
-            touched = pressing > 0;
-            if open >= work.sticking.max(work.slipping).max(1) && !begins {
-                ContactState::Open
-            } else if work.sticking >= work.slipping {
-                ContactState::Stick
-            } else {
-                ContactState::Slip
-            }
+        let state = works().map(|work| match (work.sticking, work.slipping) {
+            (0, 0) => ContactState::Open,
+            (sticking, slipping) if sticking >= slipping => ContactState::Stick,
+            _ => ContactState::Slip,
         });
+        let state: Vec<ContactState> = state.collect();
+        let usual = works().zip(&self.buckets).zip(&state).map(|((work, bucket), state)| {
+            if 2 * (work.sticking + work.slipping) > bucket.steps { *state } else { ContactState::Open }
+        });
+        let usual = usual.collect();
         let slip = works().map(|work| work.slip).collect();
-        Some(ForceCurve { normal: mean(0), tangential: mean(1), slip, state: state.collect() })
+        let strikes = works().any(|work| work.hardest > 0.0);
+        let impacts = if strikes { works().map(|work| work.hardest).collect() } else { Vec::new() };
+        Some(ForceCurve { normal: mean(0), tangential: mean(1), slip, state, usual, impacts })
     }
 }
 
@@ -315,7 +358,13 @@ mod tests {
         for k in 1..=steps {
             let t = f64::from(k);
             curves.enter(t, &[x(t)]);
-            curves.add(0, [2.0, -1.0], if k % 5 == 0 { ContactState::Slip } else { ContactState::Stick }, 0.5);
+            curves.add(
+                0,
+                [2.0, -1.0],
+                Of::Force,
+                if k % 5 == 0 { ContactState::Slip } else { ContactState::Stick },
+                0.5,
+            );
         }
         curves
     }
@@ -368,16 +417,53 @@ mod tests {
     }
 
     #[test]
-    fn a_touch_shorter_than_a_bucket_is_seen_where_it_begins() {
+    fn a_touch_shorter_than_a_bucket_is_seen() {
         let mut curves = Curves::new(4, 0.0, vec![], 1);
         for k in 1..=64 {
             curves.enter(f64::from(k), &[]);
             if k == 37 {
-                curves.add(0, [1.0, 0.0], ContactState::Stick, 0.0);
+                curves.add(0, [1.0, 0.0], Of::Force, ContactState::Stick, 0.0);
             }
         }
         let state = curves.forces(0).unwrap().state;
         assert_eq!(state, [ContactState::Open, ContactState::Open, ContactState::Stick, ContactState::Open]);
+    }
+
+    #[test]
+    fn an_impact_is_an_impulse_and_no_force() {
+        // 3 N, but for an impact of 50 N·s in every 100th step of 1 s; with buckets of 8 to 512 steps.
+        for steps in [100, 1000, 4000] {
+            let mut curves = Curves::new(16, 0.0, vec![], 1);
+            for k in 1..=steps {
+                curves.enter(f64::from(k), &[]);
+                let (impulse, of) = if k % 100 == 0 { (50.0, Of::Impact { lasting: 1.0 }) } else { (3.0, Of::Force) };
+                curves.add(0, [impulse, 0.0], of, ContactState::Stick, 0.0);
+            }
+            let forces = curves.forces(0).unwrap();
+            assert!(forces.normal.iter().all(|force| (force - 3.0).abs() < 1e-12), "{:?}", forces.normal);
+            assert_eq!(forces.impacts.iter().copied().fold(0.0, f64::max), 50.0);
+        }
+        // Where every step has one, the mean is that of all.
+        let mut curves = Curves::new(4, 0.0, vec![], 1);
+        for k in 1..=8 {
+            curves.enter(f64::from(k), &[]);
+            curves.add(0, [2.0, 1.0], Of::Impact { lasting: 1.0 }, ContactState::Slip, 0.0);
+        }
+        assert_eq!(curves.forces(0).unwrap().tangential, [1.0; 4]);
+    }
+
+    #[test]
+    fn what_chatters_touches() {
+        let mut curves = Curves::new(4, 0.0, vec![], 1);
+        for k in 1..=64 {
+            curves.enter(f64::from(k), &[]);
+            let presses = k % 3 == 0;
+            let state = if presses { ContactState::Stick } else { ContactState::Open };
+            curves.add(0, [f64::from(presses), 0.0], Of::Force, state, 0.0);
+        }
+        let forces = curves.forces(0).unwrap();
+        assert!(forces.state.iter().all(|state| *state == ContactState::Stick));
+        assert!(forces.usual.iter().all(|state| *state == ContactState::Open));
     }
 
     #[test]
@@ -389,6 +475,8 @@ mod tests {
                 tangential: vec![0.0; 6],
                 slip: slip.to_vec(),
                 state: vec![Slip, Slip, Open, Stick, Slip, Slip],
+                usual: Vec::new(),
+                impacts: Vec::new(),
             };
             forces.stick_within(1e-9);
             forces.state

@@ -7,7 +7,7 @@ use super::crowd::CrowdCurve;
 use super::drawings;
 use super::panels::{Panels, Place, Portrait, PortraitLine, TimePanel, cut_at, prefix, time_unit};
 use super::recorder::{MANY_IMPACTS, PageRecorder};
-use super::{means, redundant, span};
+use super::{means, span};
 use crate::{shortest, with_digits};
 use teeter_integrator::ContactState;
 use teeter_plot::{Axis, Band, Colour, Figure, Legend, Panel, Series};
@@ -127,7 +127,7 @@ impl Plots<'_> {
         });
         let lines: Vec<Series> = lines.collect();
         let label = format!("{} ({})", panel.title, panel.unit);
-        let (range, note) = if panel.cut { cut(&lines, panel.least, &panel.unit, None) } else { (None, None) };
+        let (range, note) = if panel.cut { cut(&lines, panel.least, &panel.unit) } else { (None, None) };
         let y = cut_axis(&label, range, &lines, panel.least);
         let contact = panel.of_contact.as_ref();
         let name = contact.map(|(_, name)| name.clone()).filter(|name| !name.is_empty());
@@ -238,8 +238,11 @@ impl Plots<'_> {
         let mut pairs = Vec::new();
         for (pair, contact) in scenery.contacts.iter().enumerate() {
             let (mut normal, mut means, mut tangential, mut bands) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-            for (point, drawn) in contact.points.iter().enumerate() {
-                let Some(forces) = &curves[contact.first + point] else { continue };
+            let mut impacts = Vec::new();
+            // Colours are for those that touch: of all there would be too many.
+            let touching = contact.points.iter().zip(&curves[contact.first..]);
+            let touching = touching.filter_map(|(drawn, forces)| Some((drawn, forces.as_ref()?)));
+            for (point, (drawn, forces)) in touching.enumerate() {
                 let label = &drawn.label;
                 let [factor, sideways] = self.panels.force_units[pair].map(|(_, factor)| factor);
                 let step = |y: &[f64], factor: f64, label: &str| {
@@ -247,8 +250,9 @@ impl Plots<'_> {
                     Series::staircase(label, borders.iter().copied().zip(y.iter().map(|y| factor * y)), end)
                         .number(point)
                 };
-                // Springs make a force smooth: what it shows is no ringing of the steps.
-                let mean = means::normal(&self.panels.curves, forces, window).filter(|_| !contact.has_duration);
+                // Springs make a force smooth, and without a beam nothing rings.
+                let mean = means::normal(&self.panels.curves, forces, window)
+                    .filter(|_| contact.rings && !contact.has_duration);
                 // The raw values stay behind their mean, which then has the name.
                 normal.push(if mean.is_some() {
                     step(&forces.normal, factor, "").faint()
@@ -260,34 +264,46 @@ impl Plots<'_> {
                 };
                 means.push(mean.map(|mean| Series::line(label, scaled(mean)).number(point)));
                 tangential.push(step(&forces.tangential, sideways, label));
+                if !forces.impacts.is_empty() {
+                    impacts.push(step(&forces.impacts, self.panels.impulse_unit.1, label));
+                }
                 bands.push(Band::new(label, stretches(&borders, &forces.state)));
             }
             if normal.is_empty() {
                 continue;
             }
             let mut panels = Vec::new();
+            let name = (scenery.contacts.len() > 1)
+                .then(|| format!("{} on {}", scenery.blocks[contact.block].name, contact.surface));
             let weight = values(&normal).fold(0.0, f64::max) / self.panels.force_units[pair][0].1;
             let units = self.panels.force_units[pair];
             for ((what, mut lines), (prefix, factor)) in
                 [("Normal", normal), ("Tangential", tangential)].into_iter().zip(units)
             {
                 let (unit, least) = (format!("{prefix}N"), 1e-6 * strongest * factor);
-                if what == "Tangential" && !self.panels.tangential[pair] {
+                let drawn = if what == "Normal" { &self.panels.normal } else { &self.panels.tangential };
+                if !drawn[pair] {
                     continue;
                 }
-                let (range, cut) = cut(&lines, least, &unit, Some(self.panels.curves.longest_bucket()));
-                let name = (scenery.contacts.len() > 1)
-                    .then(|| format!("{} on {}", scenery.blocks[contact.block].name, contact.surface));
-                let meant = (what == "Normal" && means.iter().any(Option::is_some))
-                    .then(|| format!("pale: raw; mean over {}", with_digits(window, "s", 3)));
-                let many = (what == "Normal" && self.panels.redundant[pair][0]).then(|| redundant::NOTE.to_owned());
-                let note = [name, meant, cut, many].into_iter().flatten().collect::<Vec<_>>().join("; ");
+                let (range, cut) = if contact.has_duration { (None, None) } else { cut(&lines, least, &unit) };
+                let over = with_digits(self.panels.curves.longest_bucket(), "s", 2);
+                let meant = if what == "Normal" && means.iter().any(Option::is_some) {
+                    format!("pale: means over {over}; strong: over {}", with_digits(window, "s", 3))
+                } else {
+                    format!("means over {over}{}", if impacts.is_empty() { "" } else { " without impacts" })
+                };
+                let many = self.panels.redundant[pair].note(what == "Tangential").map(str::to_owned);
+                let note = [name.clone(), Some(meant), cut, many].into_iter().flatten().collect::<Vec<_>>().join("; ");
                 let y = cut_axis(&format!("{what} force ({unit})"), range, &lines, least);
-                let note = Some(note).filter(|note| !note.is_empty());
                 if what == "Normal" {
                     lines = over_the_raw(lines, std::mem::take(&mut means));
                 }
                 panels.push(self.marked(Panel::new(y).with(lines).telling_apart(), Some(pair)).note(note));
+            }
+            if !impacts.is_empty() {
+                let label = format!("Impulse of impacts ({}N s)", self.panels.impulse_unit.0);
+                let y = Axis::around(label, values(&impacts).chain([0.0]), 1e-300);
+                panels.push(Panel::new(y).with(impacts).telling_apart().note(name));
             }
             panels.push(Panel::bands(bands, [(STICK, "stick"), (SLIP, "slip"), (Colour::Paper, "open")]));
             pairs.push((pair, weight, panels));
@@ -375,15 +391,13 @@ fn stretches(borders: &[f64], states: &[ContactState]) -> Vec<(f64, f64, Colour)
     stretches
 }
 
-/// The range that shows the forces between impacts, where those would dwarf them. Of means the largest depends on the time
-/// over which they are taken (s).
-fn cut(lines: &[Series], least: f64, unit: &str, mean_over: Option<f64>) -> (Option<(f64, f64)>, Option<String>) {
+/// The range that shows the forces between peaks, where those would dwarf them.
+fn cut(lines: &[Series], least: f64, unit: &str) -> (Option<(f64, f64)>, Option<String>) {
     let sizes = values(lines).map(f64::abs).filter(|y| *y > least && y.is_finite()).collect();
     let Some((limit, largest)) = cut_at(sizes) else { return (None, None) };
     let negative = values(lines).any(|y| y < -0.01 * limit);
     let low = if negative { -limit } else { -0.06 * limit };
-    let over = mean_over.map_or_else(String::new, |time| format!(" over {}", with_digits(time, "s", 2)));
-    (Some((low, limit)), Some(format!("peaks cut, up to {} {unit}{over}", shortest(largest, 3))))
+    (Some((low, limit)), Some(format!("peaks cut, up to {} {unit}", shortest(largest, 3))))
 }
 
 /// The y axis of lines that may have been cut to a range.

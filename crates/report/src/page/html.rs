@@ -8,6 +8,7 @@ mod tiles;
 use super::panels::Panels;
 use super::recorder::PageRecorder;
 use super::rocking::half_cycles;
+use super::scenery::BlockDrawn;
 use super::{accelerograms, content, data, thrust};
 use crate::{Summary, with_digits};
 use std::collections::BTreeMap;
@@ -60,7 +61,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("verdict", verdict(summary)),
         ("subtitle", subtitle(summary)),
         ("warnings", warnings(summary)),
-        ("tiles", tiles::tiles(&values, summary, smallest)),
+        ("tiles", tiles::tiles(&values, summary, smallest, strikers(recorder))),
         ("residual", scientific(summary.energy.largest_residual)),
         ("notdrawn", not_drawn(&panels)),
         ("shapes", beams::shapes(recorder)),
@@ -73,6 +74,15 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("settings", escaped(scene_toml)),
     ]);
     filled(TEMPLATE, &parts)
+}
+
+/// What strikes in impacts, in words after "Impacts": corners, unless there are round blocks, or springs on which nothing strikes.
+fn strikers(recorder: &PageRecorder) -> &'static str {
+    let scenery = &recorder.scenery;
+    let is_sharp = |block: &BlockDrawn| block.parts.iter().all(|(corners, radius)| *corners > 2 && *radius == 0.0);
+    let by_corners =
+        scenery.blocks.iter().all(is_sharp) && !scenery.contacts.iter().any(|contact| contact.has_duration);
+    if by_corners { " of corners" } else { "" }
 }
 
 /// The template with every `{{name}}` replaced; what is put in is not looked at again.

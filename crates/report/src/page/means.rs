@@ -24,11 +24,23 @@ pub(super) fn window(curves: &Curves) -> f64 {
     digit * power
 }
 
-/// The means of the normal force over the window about the borders of the buckets, N: at the ends of the run over what of the
-/// window lies in it. `None` where the raw values are as smooth.
+/// The stretches of time in which a contact presses, s, as indices of the borders at their ends: gaps shorter than the window belong to
+/// them.
+fn touches(borders: &[f64], normal: &[f64], window: f64) -> Vec<[usize; 2]> {
+    let mut touches: Vec<[usize; 2]> = Vec::new();
+    for (bucket, _) in normal.iter().enumerate().filter(|(_, force)| **force > 0.0) {
+        match touches.last_mut() {
+            Some([_, end]) if borders[bucket] - borders[*end] < window => *end = bucket + 1,
+            _ => touches.push([bucket, bucket + 1]),
+        }
+    }
+    touches
+}
+
+/// The means of the normal force over the window about the borders of the buckets, N: over what of the window lies in the run and in the
+/// stretch in which the contact touches. `None` where the raw values are as smooth.
 pub(super) fn normal(curves: &Curves, forces: &ForceCurve, window: f64) -> Option<Vec<f64>> {
     let borders = curves.borders();
-    let (start, end) = (*borders.first()?, *borders.last()?);
     // The impulse up to each border; between two, force is constant.
     let mut impulses = vec![0.0];
     for (ends, force) in borders.windows(2).zip(&forces.normal) {
@@ -41,11 +53,15 @@ pub(super) fn normal(curves: &Curves, forces: &ForceCurve, window: f64) -> Optio
     if forces.normal.is_empty() || borders.len() * 2 < 40 || window <= 0.0 {
         return None;
     }
-    let mean = |t: &f64| {
-        let (from, to) = ((t - 0.5 * window).max(start), (t + 0.5 * window).min(end));
-        (impulse(to) - impulse(from)) / (to - from)
-    };
-    let means: Vec<f64> = borders.iter().map(mean).collect();
+    // Before it touches and after it has left there is no force, of which a mean beyond would make a ramp.
+    let mut means = vec![0.0; borders.len()];
+    for [first, last] in touches(&borders, &forces.normal, window) {
+        for place in first..=last {
+            let t = borders[place];
+            let (from, to) = ((t - 0.5 * window).max(borders[first]), (t + 0.5 * window).min(borders[last]));
+            means[place] = (impulse(to) - impulse(from)) / (to - from);
+        }
+    }
     let largest = means.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     // Of the time in which it presses: of one that only strikes now and then, a mean would make blocks as wide as the window.
     let pressing = || means.iter().zip(&forces.normal).filter(|(_, raw)| **raw > 0.0);
@@ -56,6 +72,7 @@ pub(super) fn normal(curves: &Curves, forces: &ForceCurve, window: f64) -> Optio
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::page::curves::Of;
     use teeter_integrator::ContactState;
 
     fn run(force: impl Fn(f64) -> f64) -> (Curves, ForceCurve) {
@@ -63,7 +80,7 @@ mod tests {
         for k in 1..=1000 {
             let t = 1e-3 * f64::from(k);
             curves.enter(t, &[]);
-            curves.add(0, [1e-3 * force(t), 0.0], ContactState::Stick, 0.0);
+            curves.add(0, [1e-3 * force(t), 0.0], Of::Force, ContactState::Stick, 0.0);
         }
         let forces = curves.forces(0).unwrap();
         (curves, forces)
@@ -78,6 +95,19 @@ mod tests {
         let means = normal(&curves, &forces, window).unwrap();
         assert!(means.iter().skip(20).rev().skip(20).all(|mean| (mean - 3.1).abs() < 0.1));
         assert_eq!(means.len(), curves.borders().len());
+    }
+
+    #[test]
+    fn there_is_no_mean_before_a_contact_touches_or_after_it_has_left() {
+        let ringing = |t: f64| 3.1 + (2.0 * std::f64::consts::PI * 400.0 * t).sin();
+        let (curves, forces) = run(|t| if (0.3..0.7).contains(&t) { ringing(t) } else { 0.0 });
+        let means = normal(&curves, &forces, window(&curves)).unwrap();
+        for (mean, t) in means.iter().zip(curves.borders()) {
+            // To a bucket of two steps.
+            let expected = if (0.296..=0.704).contains(&t) { 2.5..=3.7 } else { 0.0..=0.0 };
+            let edge = (t - 0.3).abs() < 0.005 || (t - 0.7).abs() < 0.005;
+            assert!(edge || expected.contains(mean), "{mean} at {t}");
+        }
     }
 
     #[test]

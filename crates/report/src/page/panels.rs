@@ -4,7 +4,7 @@
 use super::content::{LeftOut, largest};
 use super::curves::{Curves, ForceCurve};
 use super::recorder::{NUMBERS, PageRecorder};
-use super::redundant::redundant;
+use super::redundant::{Redundant, redundant};
 use super::scenery::ContactDrawn;
 use teeter_scenario::scene::LengthUnit;
 
@@ -122,10 +122,14 @@ pub(crate) struct Panels {
     pub(crate) left_out: Vec<LeftOut>,
     /// The prefixes of the units of normal and of tangential forces, with their factors, by contacts.
     pub(crate) force_units: Vec<[(&'static str, f64); 2]>,
+    /// The prefix of the unit of impulses of impacts, with its factor: that of the largest of all.
+    pub(crate) impulse_unit: (&'static str, f64),
+    /// Whether normal forces are more than rounding, by contacts: not of those that only strike.
+    pub(crate) normal: Vec<bool>,
     /// Whether tangential forces are more than rounding, by contacts.
     pub(crate) tangential: Vec<bool>,
-    /// Whether the forces are [one of many sets](redundant), by contacts: over a part of the run, and at its end.
-    pub(crate) redundant: Vec<[bool; 2]>,
+    /// What equilibrium leaves open of the forces, by contacts.
+    pub(crate) redundant: Vec<Redundant>,
 }
 
 /// Numbers of a length as large as this are in a larger unit than the scene's.
@@ -160,11 +164,17 @@ fn seen<'a>(forces: impl Iterator<Item = &'a f64>) -> f64 {
 /// The prefixes of the units of normal and tangential forces, with their factors, by contacts: those of the largest normal forces of all, so that forces can
 /// be compared, but for what would be [`SMALL`] there, as friction that hardly acts beside a weight.
 fn force_units(recorder: &PageRecorder, forces: &[Option<ForceCurve>]) -> Vec<[(&'static str, f64); 2]> {
-    let common = prefix(seen(forces.iter().flatten().flat_map(|forces| &forces.normal)));
+    // Peaks of springs are forces that act, and are shown whole.
+    let has_springs = recorder.scenery.contacts.iter().any(|contact| contact.has_duration);
+    let seen = |forces: &mut dyn Iterator<Item = &f64>| if has_springs { largest(forces) } else { seen(forces) };
+    let common = prefix(seen(&mut forces.iter().flatten().flat_map(|forces| &forces.normal)));
     let unit = |size: f64| if size > 0.0 && size * common.1 < SMALL { prefix(size) } else { common };
     let of = |contact: &ContactDrawn| {
         let own = || forces[contact.first..contact.first + contact.points.len()].iter().flatten();
-        let sizes = [seen(own().flat_map(|forces| &forces.normal)), seen(own().flat_map(|forces| &forces.tangential))];
+        let sizes = [
+            seen(&mut own().flat_map(|forces| &forces.normal)),
+            seen(&mut own().flat_map(|forces| &forces.tangential)),
+        ];
         sizes.map(unit)
     };
     recorder.scenery.contacts.iter().map(of).collect()
@@ -200,9 +210,11 @@ impl Panels {
         let drawn = |curves: Curves| {
             let forces = forces(&curves);
             let mut panels = Self {
+                normal: vec![true; recorder.scenery.contacts.len()],
                 tangential: vec![true; recorder.scenery.contacts.len()],
                 redundant: redundant(recorder, &curves, &forces),
                 force_units: force_units(recorder, &forces),
+                impulse_unit: prefix(largest(forces.iter().flatten().flat_map(|forces| &forces.impacts))),
                 curves,
                 forces,
                 panels: Vec::new(),
@@ -236,14 +248,14 @@ impl Panels {
 
     /// Whether forces of contacts are one of many sets at the end of the run.
     pub(crate) fn many_at_end(&self) -> bool {
-        self.redundant.iter().any(|[_, at_end]| *at_end)
+        self.redundant.iter().any(|redundant| redundant.at_end)
     }
 
     /// How many numbers the curves take on the page.
     fn numbers(&self) -> usize {
         let lines = self.panels.iter().flat_map(|panel| &panel.lines).map(|line| line.y.len()).sum::<usize>();
         let portraits = self.portraits.iter().flat_map(|portrait| &portrait.lines).map(|line| 3 * line.t.len());
-        let forces = self.forces.iter().flatten().map(|forces| 3 * forces.normal.len());
+        let forces = self.forces.iter().flatten().map(|forces| 3 * forces.normal.len() + forces.impacts.len());
         lines + portraits.sum::<usize>() + forces.sum::<usize>() + 3 * self.curves.len()
     }
 

@@ -1,7 +1,7 @@
 //! The observer that keeps what the page shows.
 
 use super::bands::{BAND_COLUMNS, Bands};
-use super::curves::Curves;
+use super::curves::{Curves, Of};
 use super::frames::Frames;
 use super::network::Network;
 use super::orbit::Orbit;
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
 use teeter_integrator::{
-    Closing, ClosingMonitor, Contact, ContactState, Model, Observer, ObserverError, State, StepReport,
+    Active, Closing, ClosingMonitor, Contact, Model, Observer, ObserverError, PhaseKind, State, StepReport,
 };
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
@@ -148,6 +148,8 @@ pub struct PageRecorder {
     closings: ClosingMonitor<2>,
     /// The contacts that closed in the step.
     closed: Vec<Closed>,
+    /// The blocks that feel the impacts of a step.
+    struck: Vec<usize>,
 }
 
 impl PageRecorder {
@@ -196,6 +198,7 @@ impl PageRecorder {
             bands: Bands::default(),
             closings: ClosingMonitor::default(),
             closed: Vec::new(),
+            struck: Vec::new(),
             scenery,
         }
     }
@@ -297,22 +300,56 @@ impl PageRecorder {
         }
     }
 
-    fn take_contacts(&mut self, step: &StepReport<'_, 2>) {
+    fn take_contacts(&mut self, step: &StepReport<'_, 2>, closed: &[Closed]) {
         for part in step.active() {
             if self.scenery.has_network() {
                 self.kept.network.add(part.contacts);
             }
+            // What closes at an instant of its own has no part in the stretch of time before it.
+            let is_instant = |other: &Active<'_, 2>| other.kind == PhaseKind::Impact && other.end == part.end;
+            let strikers = if step.active().any(|other| is_instant(&other)) { &[] } else { closed };
+            self.find_struck(part.contacts, part.end, strikers);
             for contact in part.contacts {
                 let Some((pair, point)) = place(&self.layout, contact) else { continue };
-                // Impulses are those of the whole step; what a contact does in it is what it does
-                // in its last part.
-                let does = if part.is_last_lasting { contact.state() } else { ContactState::Open };
                 let Some(drawn) = self.scenery.contacts.get(pair) else { continue };
-                let curve = drawn.first + point;
+                let strikes = part.kind == PhaseKind::Impact
+                    || self.free_blocks(contact).any(|block| self.struck.contains(&block));
+                // Springs give the force of an impact its course.
+                let of = if strikes && !drawn.has_duration { Of::Impact { lasting: part.duration } } else { Of::Force };
                 let slip = slip(contact, part.duration, part.balance);
-                self.kept.curves.add(curve, [contact.p[0], contact.p[1]], does, slip);
+                self.kept.curves.add(drawn.first + point, [contact.p[0], contact.p[1]], of, contact.state(), slip);
             }
         }
+    }
+
+    /// The blocks of a contact whose motion isn't prescribed.
+    fn free_blocks(&self, contact: &Contact<2>) -> impl Iterator<Item = usize> {
+        let blocks = &self.scenery.blocks;
+        let bodies = contact.sides.map(|side| side.body.0 as usize);
+        bodies.into_iter().filter(|body| blocks.get(*body).is_some_and(|block| !block.driven))
+    }
+
+    /// Finds the blocks that feel the impacts at the end of a part of a step: those that strike or are struck, and those
+    /// that press on these, as a rigid block hands an impact on at once.
+    fn find_struck(&mut self, contacts: &[Contact<2>], end: f64, closed: &[Closed]) {
+        let mut struck = std::mem::take(&mut self.struck);
+        struck.clear();
+        let rigid = |of: &&Closed| {
+            let pair = self.scenery.contacts.get(of.contact.id.pair() as usize);
+            of.closing == Closing::Impact && of.t == end && pair.is_some_and(|pair| !pair.has_duration)
+        };
+        closed.iter().filter(rigid).for_each(|of| struck.extend(self.free_blocks(&of.contact)));
+        let mut known = 0;
+        while struck.len() > known {
+            known = struck.len();
+            for contact in contacts.iter().filter(|contact| contact.p[0] > 0.0) {
+                if self.free_blocks(contact).any(|block| struck.contains(&block)) {
+                    let new = self.free_blocks(contact).filter(|block| !struck.contains(block)).collect::<Vec<_>>();
+                    struck.extend(new);
+                }
+            }
+        }
+        self.struck = struck;
     }
 
     /// Marks the impacts among the contacts that closed in a step.
@@ -353,7 +390,7 @@ impl PageRecorder {
         self.take_row(state);
         self.kept.curves.enter(state.t, &self.row);
         self.take_orbits(state.t);
-        self.take_contacts(step);
+        self.take_contacts(step, closed);
         // After the contacts: what they did belongs to the picture at the step's end.
         self.take_frame(state);
         self.mark(step, state, closed);

@@ -5,6 +5,9 @@
 //! - its normal forces: one if one of its points presses, two if more do, or if sides lie flat on each other, so that others could;
 //! - one tangential force, if the pair has friction and a point sticks. Where all slide, friction follows from the normal forces.
 //!
+//! How a pair's tangential force is shared by its points is open wherever two of them stick: their tangential forces have one line of
+//! action, so that equilibrium knows only their sum.
+//!
 //! With more unknowns than equations only sums over some of the contacts follow. Of more than two points of one pair only the
 //! resultant does, but for those on a beam, which bends as they press. Contacts with duration have springs, whose forces follow from
 //! the motion: they leave no such choice.
@@ -18,22 +21,51 @@ use teeter_integrator::ContactState;
 /// Times at which the contacts are looked at.
 const LOOKS: usize = 50;
 
-/// Contacts are told if they are so in this part of these times, or at the end: not for a touch in passing.
+/// Contacts are told if they are so in this part of these times: not for a touch in passing.
 const LEAST: f64 = 0.1;
 
-/// By contacts: whether their forces are one of many sets, over a part of the run and at its end.
-pub(super) fn redundant(recorder: &PageRecorder, curves: &Curves, forces: &[Option<ForceCurve>]) -> Vec<[bool; 2]> {
+/// What equilibrium leaves open of the forces of a contact.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Redundant {
+    /// Whether all of its forces are one of many sets, over a part of the run.
+    pub(crate) forces: bool,
+    /// The same at the end of the run.
+    pub(crate) at_end: bool,
+    /// Whether its points share their tangential force in one of many ways, over a part of the run.
+    pub(crate) shares: bool,
+}
+
+impl Redundant {
+    /// What a figure says beside the tangential forces, or the normal ones.
+    pub(super) fn note(self, tangential: bool) -> Option<&'static str> {
+        match self {
+            Self { forces: true, .. } => Some(NOTE),
+            Self { shares: true, .. } if tangential => Some("only the sum over points that stick is determined"),
+            _ => None,
+        }
+    }
+}
+
+/// What is open of the forces, by contacts.
+pub(super) fn redundant(recorder: &PageRecorder, curves: &Curves, forces: &[Option<ForceCurve>]) -> Vec<Redundant> {
     let borders = curves.borders();
     let contacts = &recorder.scenery.contacts;
     let buckets = forces.iter().flatten().map(|forces| forces.state.len()).max().unwrap_or(0);
-    let Some(last) = buckets.checked_sub(1) else { return vec![[false; 2]; contacts.len()] };
+    let Some(last) = buckets.checked_sub(1) else { return vec![Redundant::default(); contacts.len()] };
     let states = |contact: &ContactDrawn, bucket: usize| {
         let own = forces[contact.first..contact.first + contact.points.len()].iter().flatten();
-        own.filter_map(move |forces| forces.state.get(bucket).copied()).collect::<Vec<_>>()
+        own.filter_map(move |forces| forces.usual.get(bucket).copied()).collect::<Vec<_>>()
     };
-    let looks: Vec<Vec<bool>> = (1..=LOOKS.min(buckets))
-        .map(|look| look * last / LOOKS.min(buckets))
-        .map(|bucket| {
+    let buckets: Vec<usize> = (1..=LOOKS.min(buckets)).map(|look| look * last / LOOKS.min(buckets)).collect();
+    let shares = |contact: &ContactDrawn, bucket: usize| {
+        let sticking = states(contact, bucket).into_iter().filter(|state| *state == ContactState::Stick).count();
+        // The top fibre of a beam moves along as it turns, by its own amount at each point.
+        let along = contact.beam.is_some_and(|beam| recorder.scenery.beams[beam].top);
+        sticking > 1 && contact.has_friction && !contact.has_duration && !along
+    };
+    let looks: Vec<Vec<bool>> = buckets
+        .iter()
+        .map(|&bucket| {
             let states: Vec<Vec<ContactState>> = contacts.iter().map(|contact| states(contact, bucket)).collect();
             let pressing = |of: &Vec<ContactState>| of.iter().filter(|state| **state != ContactState::Open).count();
             let points: Vec<usize> = states.iter().map(pressing).collect();
@@ -46,11 +78,13 @@ pub(super) fn redundant(recorder: &PageRecorder, curves: &Curves, forces: &[Opti
         })
         .collect();
     let at_end = |contact: usize| looks.last().is_some_and(|look| look[contact]);
-    let often = |contact: usize| {
-        let count = looks.iter().filter(|look| look[contact]).count();
-        count as f64 >= LEAST * looks.len() as f64 && count > 0
+    let often = |count: usize| count as f64 >= LEAST * looks.len() as f64 && count > 0;
+    let of = |contact: usize| Redundant {
+        forces: often(looks.iter().filter(|look| look[contact]).count()),
+        at_end: at_end(contact),
+        shares: often(buckets.iter().filter(|bucket| shares(&contacts[contact], **bucket)).count()),
     };
-    (0..contacts.len()).map(|contact| [often(contact) || at_end(contact), at_end(contact)]).collect()
+    (0..contacts.len()).map(of).collect()
 }
 
 /// Of contacts between two blocks that press: whether they lie flat on each other, in the picture at or before `t` (s).

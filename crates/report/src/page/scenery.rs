@@ -53,7 +53,7 @@ pub(crate) struct BeamDrawn {
     pub(crate) places: Vec<Probe>,
     #[serde(skip)]
     pub(crate) middle: Probe,
-    /// The probes whose deflection is recorded, but for one at midspan: where, m, and how.
+    /// The probes whose deflection is recorded, but for one at midspan, and free ends: where, m, and how.
     #[serde(skip)]
     pub(crate) probes: Vec<(f64, Probe)>,
     /// Whether one of them is at midspan.
@@ -81,6 +81,9 @@ pub(crate) struct ContactDrawn {
     /// Whether its law has springs, whose forces follow from the motion.
     #[serde(skip)]
     pub(crate) has_duration: bool,
+    /// Whether a beam carries what touches, directly or by other blocks, so that its ringing is in the forces.
+    #[serde(skip)]
+    pub(crate) rings: bool,
     /// Whether it has friction.
     #[serde(skip)]
     pub(crate) has_friction: bool,
@@ -172,6 +175,25 @@ fn short(corner: &str) -> String {
     }
 }
 
+/// Of each block, whether it can touch a beam, or other blocks that can, and so on.
+fn on_beams(scene: &Scene) -> Vec<bool> {
+    let mut found = vec![false; scene.blocks.len()];
+    let mut grows = true;
+    while grows {
+        grows = false;
+        for contact in &scene.contacts {
+            let other = contact.other_block();
+            let rings = matches!(contact.surface, SupportingBody::Beam(_))
+                || found[contact.block]
+                || other.is_some_and(|other| found[other]);
+            for block in [Some(contact.block), other].into_iter().flatten().filter(|_| rings) {
+                grows |= !std::mem::replace(&mut found[block], true);
+            }
+        }
+    }
+    found
+}
+
 /// Most points of contacts that are drawn one by one: of more nobody could tell whose curve is
 /// whose, and the page would be large.
 const MOST_POINTS: usize = 2000;
@@ -181,6 +203,9 @@ const PIECES: usize = 40;
 
 /// Most pieces of a beam's line.
 const MOST_PIECES: usize = 80;
+
+/// The word for an end that nothing holds.
+pub(crate) const FREE: &str = "free";
 
 /// Whether a place is midspan, up to rounding.
 fn is_middle(x: f64, span: f64) -> bool {
@@ -232,10 +257,16 @@ impl Scenery {
                 points: pieces + 1,
                 places: (0..=pieces).map(|k| at(span * (k as f64 / pieces as f64))).collect(),
                 middle: at(0.5 * span),
-                probes: if drawn.output.quantities.contains(&scene::BeamQuantity::Deflection) {
-                    place.probes.iter().filter(|x| !is_middle(**x, span)).map(|x| (*x, at(*x))).collect()
-                } else {
-                    Vec::new()
+                probes: {
+                    let recorded = drawn.output.quantities.contains(&scene::BeamQuantity::Deflection);
+                    let asked = place.probes.iter().copied().filter(|x| recorded && !is_middle(*x, span));
+                    // The end of a cantilever deflects most.
+                    let supports = drawn.spec.supports.map(wording::support);
+                    let free = [0.0, span].into_iter().zip(supports).filter(|(_, support)| *support == FREE);
+                    let mut places: Vec<f64> = asked.chain(free.map(|(end, _)| end)).collect();
+                    places.sort_by(f64::total_cmp);
+                    places.dedup();
+                    places.into_iter().map(|x| (x, at(x))).collect()
                 },
                 probed_middle: place.probes.iter().any(|x| is_middle(*x, span)),
             }
@@ -246,6 +277,7 @@ impl Scenery {
         let mut points = 0;
         let all: usize = layout.pairs.iter().map(|pair| pair.points.len()).sum();
         let shown = if all > MOST_POINTS { 0 } else { scene.contacts.len() };
+        let on_beams = on_beams(scene);
         let contacts = scene.contacts.iter().zip(&layout.pairs).take(shown).map(|(contact, pair)| {
             let drawn = pair.points.iter().map(|point| PointDrawn {
                 label: point.name.replace(['-', '.'], " "),
@@ -278,6 +310,7 @@ impl Scenery {
                 lower: contact.face == BeamFace::Lower,
                 points: drawn.collect(),
                 has_duration: contact.law.impact.has_duration(),
+                rings: on_beams[contact.block],
                 has_friction: contact.law.friction > 0.0,
                 first,
             }

@@ -114,9 +114,9 @@ impl Recorder<'_> {
         let Some((t, contact, name)) = impacts.filter_map(on_crest).next() else { return };
         self.warn_once("crest-impact", t, || {
             format!(
-                "contact `{contact}`: a crest of the beam struck the base of `{name}` between its corners at t = {}; a base that comes down \
-                 rolls over a crest without impacts, but only where steps are short enough for that: compare peaks with shorter steps, or \
-                 take `points = \"corners\"`, which leaves crests out",
+                "contact `{contact}`: a hump of the beam struck the base of `{name}` between its corners at t = {}; a base that comes down \
+                 rolls over a hump without impacts, but only where steps are short enough for that: compare peaks with shorter steps, or \
+                 take `points = \"corners\"`, which leaves humps out",
                 time(t)
             )
         });

@@ -15,6 +15,8 @@ pub(crate) enum Going {
     Flies,
     /// It is in the air after a landing, or was so a short time ago.
     Bounces,
+    /// It stays on contacts with springs, and moves little and slowly.
+    Vibrates,
     /// A round one turns about as fast as it goes, in the sense of its way.
     Rolls,
     /// A round one goes without turning so.
@@ -23,7 +25,8 @@ pub(crate) enum Going {
 
 impl Going {
     /// All of them, in the order in which many blocks are told.
-    pub(super) const ALL: [Self; 5] = [Self::Falls, Self::Flies, Self::Bounces, Self::Rolls, Self::Slides];
+    pub(super) const ALL: [Self; 6] =
+        [Self::Falls, Self::Flies, Self::Bounces, Self::Vibrates, Self::Rolls, Self::Slides];
 
     /// What it does, after "is still".
     pub(super) fn word(self) -> &'static str {
@@ -31,6 +34,7 @@ impl Going {
             Self::Falls => "falling",
             Self::Flies => "in flight",
             Self::Bounces => "bouncing",
+            Self::Vibrates => "vibrating on its contacts",
             Self::Rolls => "rolling",
             Self::Slides => "sliding",
         }
@@ -46,10 +50,18 @@ pub(super) struct Touched {
     was_free: bool,
     /// When it last came down after a flight, not a moment without a contact, s.
     landed: Option<f64>,
+    /// How long that flight took, from the start of the run if it had not touched anything before, s.
+    flown: f64,
 }
 
 /// What touches nothing for less than this part of √(R/g) doesn't fly, but chatters: a bounce as long rises by little more than a thousandth of R.
 const FLIGHT: f64 = 0.1;
+
+/// What has been on its springs for this many times as long as its last flight took doesn't bounce any more.
+const STAYS: f64 = 2.0;
+
+/// Up to this many times the speed of what is still, √(gR)/10, a motion on springs is a vibration.
+const VIBRATES: f64 = 100.0;
 
 impl Fates {
     /// Takes the contacts of a step in that ended at `t` (s).
@@ -64,6 +76,7 @@ impl Fates {
             let flew = touched.last.map_or(touched.was_free, |last| step.t_start - last >= flight);
             if flew && touched.last != Some(t) {
                 touched.landed = Some(t);
+                touched.flown = step.t_start - touched.last.unwrap_or(0.0);
             }
             touched.last = Some(t);
         }
@@ -77,7 +90,7 @@ impl Seen {
     /// How it moves; `None` of one that does so in no way that has a word, such as one that shakes where it stands.
     pub(super) fn going(&self, watched: &Watched, layout: &Layout, number: usize, state: &State) -> Option<Going> {
         let [vx, vy, spin] = watched.velocity(layout, number, state);
-        let (t, Touched { last, landed, .. }) = (state.t, self.touched);
+        let (t, Touched { last, landed, flown, .. }) = (state.t, self.touched);
         if last.is_none_or(|last| t - last >= FLIGHT * watched.still_time) {
             // In free flight it is where it last touched something again when its speed has turned round.
             let is_above = |last: f64| vy > -0.5 * watched.gravity * (t - last);
@@ -88,6 +101,11 @@ impl Seen {
                 Some(last) if is_above(last) => Going::Flies,
                 _ => Going::Falls,
             });
+        }
+        // Bounces become shorter: had it bounced again, it would have left its springs by now.
+        let stays = landed.is_none_or(|landed| t - landed > STAYS * flown);
+        if watched.on_springs && stays && watched.speed(layout, number, state) <= VIBRATES * watched.still_speed {
+            return Some(Going::Vibrates);
         }
         if landed.is_some_and(|landed| t - landed <= SETTLED * watched.still_time) {
             return Some(Going::Bounces);

@@ -27,12 +27,7 @@ pub(crate) fn headline(
     };
     let borne = beams.iter().filter_map(|beam| Some((beam.part_of_yield_strength?, beam)));
     if let Some((part, beam)) = borne.max_by(|a, b| a.0.total_cmp(&b.0)) {
-        // After impacts the third digit is that of the step.
-        let most = if verdict.is_empty() { 3 } else { 2 };
-        let cap = if verdict.is_empty() { 99.9 } else { 99.0 };
-        let percent = if part < 1.0 { (100.0 * part).min(cap) } else { 100.0 * part };
-        let percent = teeter_scenario::readable::shortest(percent, most);
-        text.push_str(&format!("; `{}` was stressed to {percent} % of its yield strength", beam.beam));
+        text.push_str(&format!("; `{}` was stressed to {} of its yield strength", beam.beam, percent(part, verdict)));
     } else if verdict.is_empty() {
         let known = beams.iter().filter_map(|beam| Some((beam.largest_stress?, beam)));
         if let Some((largest, beam)) = known.max_by(|a, b| a.0.stress.total_cmp(&b.0.stress)) {
@@ -45,6 +40,13 @@ pub(crate) fn headline(
         }
     }
     text
+}
+
+/// A part of the yield strength in percent. With blocks it is the stress of impacts, which depends on step and elements: `about`.
+pub(crate) fn percent(part: f64, verdict: &[BodyVerdict]) -> String {
+    let (digits, cap, about) = if verdict.is_empty() { (3, 99.9, "") } else { (2, 99.0, "about ") };
+    let percent = if part < 1.0 { (100.0 * part).min(cap) } else { 100.0 * part };
+    format!("{about}{} %", teeter_scenario::readable::shortest(percent, digits))
 }
 
 /// What became of beams without blocks: how far they deflected, in the order given.
@@ -97,22 +99,32 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     let way = of.way.map_or("", |way| way.word());
     let largest = of.max_phi_over_alpha.filter(|part| *part >= super::ROCKED);
     let largest = largest.map_or_else(String::new, |part| format!("largest φ/α {}", self::part(part)));
-    let by = |way: f64| format!("{} {}", with_unit(way.abs(), "m"), direction(scene, way));
-    let back = of.farthest.map_or_else(String::new, |way| format!(" after up to {}", by(way)));
-    let slid = of.slid.map_or_else(String::new, |slid| format!("slid by {}{back}", by(slid)));
+    let by = |way: f64| format!("{} {}", with_unit(way.abs(), "m"), direction(scene, way).way);
+    let slid = of.slid.map_or_else(String::new, |slid| match of.farthest {
+        None => format!("slid by {}", by(slid)),
+        Some(farthest) if !has_slid(scene, of) => format!("slid {}, then back to its start", by(farthest)),
+        Some(farthest) => {
+            let side = direction(scene, slid).side;
+            format!("slid {}, then back to {} {side} its start", by(farthest), with_unit(slid.abs(), "m"))
+        }
+    });
     let beside = |text: String| if largest.is_empty() { text } else { format!("{text} ({largest})") };
     let tumbled = of.tumbled.map(|turn| format!("tumbled by {}, then ", turns(turn.abs())));
+    let moving = if of.is_carried { moving_base(scene, &[of]) } else { "" };
     // Where nothing is said, it rests on its base.
     let side = side_below(of).filter(|_| of.lies_on != Some(Side::Base)).unwrap_or_default();
-    let then_rested = of
-        .rests_from
-        .filter(|_| of.what != Fate::Rests)
-        .map_or_else(String::new, |t| format!(", came to rest{} at {}", side_below(of).unwrap_or_default(), time(t)));
+    let then_rested = of.rests_from.filter(|_| of.what != Fate::Rests).map_or_else(String::new, |t| {
+        format!(", came to rest{}{moving} at {}", side_below(of).unwrap_or_default(), time(t))
+    });
+    let turned = of.turned.map_or_else(String::new, |turn| match turns(turn) {
+        degrees if degrees.ends_with('°') => format!(", turned by {degrees} in all"),
+        turns => format!(", made {turns} in all"),
+    });
     let fate = match of.what {
         Fate::Overturned if of.t == Some(0.0) => {
-            format!("began past its critical angle and overturned to the {way}{then_rested}")
+            format!("began past its critical angle and overturned to the {way}{turned}{then_rested}")
         }
-        Fate::Overturned => format!("overturned to the {way}{at}{then_rested}"),
+        Fate::Overturned => format!("overturned to the {way}{at}{turned}{then_rested}"),
         Fate::Left => {
             let block = scene.blocks.iter().find(|block| block.name == of.body);
             let beam = block.and_then(|block| match block.placement {
@@ -130,8 +142,8 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             let still = if on.is_empty() { " still" } else { "" };
             beside(format!("{how}{still}{side}{on} throughout"))
         }
-        Fate::Rests => beside(format!("came to rest{side}{at}")),
-        Fate::Slid if of.rests_from.is_some() => beside(format!("{slid} and came to rest{side}{at}")),
+        Fate::Rests => beside(format!("came to rest{side}{moving}{at}")),
+        Fate::Slid if of.rests_from.is_some() => beside(format!("{slid} and came to rest{side}{moving}{at}")),
         Fate::Slid if of.still_from.is_some() => beside(format!("{slid}{}", still(scene, of, end))),
         Fate::Slid => beside(format!("slides on, {slid} so far")),
         Fate::Rocks if of.on_its_way.is_some() => {
@@ -163,17 +175,26 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
 /// The slope of what carries blocks, rad, from which on sliding is told as up or down it.
 const STEEP: f64 = 0.01;
 
+/// A direction along what carries a block, in words.
+struct Direction {
+    /// Which way it went.
+    way: &'static str,
+    /// On which side of its start it is.
+    side: &'static str,
+}
+
 /// In which direction something slid along what carries it.
-fn direction(scene: &Scene, slid: f64) -> &'static str {
+fn direction(scene: &Scene, slid: f64) -> Direction {
     let ground = scene.ground.as_ref().filter(|ground| ground.profile.is_none() && scene.beams.is_empty());
     let [across, down] = [scene.gravity[0], -scene.gravity[1]];
     let slope = ground.map_or(0.0, |ground| ground.incline - across.atan2(down));
-    match (slope.abs() >= STEEP, slid < 0.0) {
-        (true, _) if slope * slid > 0.0 => "up the slope",
-        (true, _) => "down the slope",
-        (false, true) => "to the left",
-        (false, false) => "to the right",
-    }
+    let (way, side) = match (slope.abs() >= STEEP, slid < 0.0) {
+        (true, _) if slope * slid > 0.0 => ("up the slope", "above"),
+        (true, _) => ("down the slope", "below"),
+        (false, true) => ("to the left", "left of"),
+        (false, false) => ("to the right", "right of"),
+    };
+    Direction { way, side }
 }
 
 /// That a block is still at the end, in words, of one that is not known to rest: while something shakes it, it may move again.
@@ -246,27 +267,30 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
     }
     tell(&of(&[Fate::Left]), "left their beam", "first");
     tell(&of(&[Fate::Sunk]), "fell below everything", "first");
-    let resting: Vec<_> =
-        verdict.iter().filter(|of| matches!(of.what, Fate::Rests | Fate::Slid) && of.rests_from.is_some()).collect();
-    if let Some(last) = resting.iter().filter_map(|of| of.rests_from).reduce(f64::max) {
-        // Of rectangles: other shapes are as often drawn on any of their sides.
-        let is_over = |of: &&&BodyVerdict| matches!(of.lies_on, Some(Side::Left | Side::Right | Side::Top));
-        let slid = (resting.iter().filter(|of| of.what == Fate::Slid).count(), "after sliding");
-        let over = (resting.iter().filter(is_over).count(), "on another side than the base");
-        let told =
-            [slid, over].into_iter().filter(|(count, _)| *count > 0).map(|(count, how)| format!("{count} {how}"));
-        let told = told.collect::<Vec<_>>().join(", ");
-        let how = if told.is_empty() { told } else { format!(" ({told})") };
-        let what = if last == 0.0 {
-            match moving_base(scene, &resting) {
-                "" => "stood still throughout".to_owned(),
-                on => format!("stood{on} throughout"),
-            }
-        } else {
-            let when = if resting.len() == 1 { " at" } else { ", last at" };
-            format!("came to rest{how}{when} {}", time(last))
-        };
-        tell(&resting, &what, "");
+    let resting = || verdict.iter().filter(|of| matches!(of.what, Fate::Rests | Fate::Slid) && of.rests_from.is_some());
+    let (stood, moved): (Vec<_>, Vec<_>) = resting().partition(|of| of.rests_from == Some(0.0));
+    // What never moved didn't come to rest.
+    for resting in [moved, stood] {
+        if let Some(last) = resting.iter().filter_map(|of| of.rests_from).reduce(f64::max) {
+            // Of rectangles: other shapes are as often drawn on any of their sides.
+            let is_over = |of: &&&BodyVerdict| matches!(of.lies_on, Some(Side::Left | Side::Right | Side::Top));
+            let slid = (resting.iter().filter(|of| of.what == Fate::Slid).count(), "after sliding");
+            let over = (resting.iter().filter(is_over).count(), "on another side than the base");
+            let told =
+                [slid, over].into_iter().filter(|(count, _)| *count > 0).map(|(count, how)| format!("{count} {how}"));
+            let told = told.collect::<Vec<_>>().join(", ");
+            let how = if told.is_empty() { told } else { format!(" ({told})") };
+            let what = if last == 0.0 {
+                match moving_base(scene, &resting) {
+                    "" => "stood still throughout".to_owned(),
+                    on => format!("stood{on} throughout"),
+                }
+            } else {
+                let when = if resting.len() == 1 { " at" } else { ", last at" };
+                format!("came to rest{how}{when} {}", time(last))
+            };
+            tell(&resting, &what, "");
+        }
     }
     let (tipping, rocking): (Vec<_>, Vec<_>) = of(&[Fate::Rocks]).into_iter().partition(|of| of.tips.is_some());
     tell(&tipping, if tipping.len() == 1 { "is still tipping" } else { "are still tipping" }, "");

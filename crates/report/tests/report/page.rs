@@ -193,6 +193,15 @@ fn the_curves_miss_no_peak_and_the_forces_no_impulse() {
         let forces = numbers(&point["normal"]);
         sum + forces.iter().zip(borders.windows(2)).map(|(f, ends)| f * (ends[1] - ends[0])).sum::<f64>()
     });
+    // Impacts have impulses of their own.
+    let impacts: f64 = run.summary.impacts.iter().map(|impact| impact.impulse_n).sum();
+    let shown = data["forces"]["points"].as_array().unwrap().iter().flat_map(|point| numbers(&point["impacts"]));
+    let [_, factor] = data["forces"]["impulse_unit"].as_array().unwrap().as_slice() else { panic!("{data}") };
+    assert!(factor.as_f64().is_some());
+    let shown: f64 = shown.sum();
+    // What the other foot gets of an impact is shown, too: next to nothing, as it lifts.
+    assert!(impacts > 0.0 && (0.999..1.02).contains(&(shown / impacts)), "{shown} N s against {impacts}");
+    let impulse = impulse + shown;
     let weight = 2700.0 * 0.03 * 0.135 * 0.03 * 9.81;
     assert!((impulse / weight - 1.0).abs() < 0.02, "{impulse} N s against {weight} N for 1 s");
 }

@@ -23,14 +23,15 @@ fn a_chip_of_a_micrometre_has_axes_that_one_can_read() {
     let page = data(&run.html);
     let unit = |id: &str| panel(&page, id).unwrap()["unit"].as_str().unwrap().to_owned();
     assert_eq!(["x", "y", "energy"].map(unit), ["nm", "µm", "zJ"]);
-    // The weight is 91 fN; the peaks of the impacts, of some pN, are cut.
+    // The weight is 91 fN; impacts have impulses, of some 1e-18 N s.
     let unit = &page["forces"]["units"][0][0];
     assert_eq!((&unit[0], &unit[1]), (&"f".into(), &1e15.into()));
     let figures = figures(&run.page);
     let forces = figure(&figures, "contact_forces.svg");
-    for wanted in ["Normal force (fN)", "Time t (ms)", "peaks cut, up to 2"] {
+    for wanted in ["Normal force (fN)", "Time t (ms)", "Impulse of impacts (aN s)"] {
         assert!(forces.contains(wanted), "{wanted}");
     }
+    assert!(!forces.contains("peaks cut"), "without the impacts there are no peaks");
     for (name, svg) in &figures {
         assert!(!svg.contains("0.0030<") && !svg.contains("e\u{2212}"), "{name} has a label that is none");
     }

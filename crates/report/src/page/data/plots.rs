@@ -138,11 +138,22 @@ pub(super) struct ForceData {
     window: String,
     /// The longest time whose mean a force is, with its unit.
     bucket: String,
+    /// The unit of `impacts`: the prefix, and by what N s are multiplied.
+    impulse_unit: (&'static str, f64),
+    /// Contacts with springs, the peaks of whose forces are not cut.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    springs: Vec<usize>,
+    /// Contacts that only strike, without forces between impacts.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    forceless: Vec<usize>,
     /// Contacts whose tangential forces are rounding.
     frictionless: Vec<usize>,
     /// Contacts whose forces are one of many sets.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     redundant: Vec<usize>,
+    /// Others whose points share their tangential force in one of many ways.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    shares: Vec<usize>,
     points: Vec<PointForces>,
 }
 
@@ -155,6 +166,9 @@ struct PointForces {
     #[serde(skip_serializing_if = "Option::is_none")]
     mean: Option<Column>,
     tangential: Column,
+    /// The largest normal impulse of an impact, N s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    impacts: Option<Column>,
     /// A letter a value: `o` open, `k` stick, `l` slip.
     state: String,
 }
@@ -218,9 +232,10 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
             point,
             normal: Column::of(&forces.normal, SEEN_BELOW_PEAKS),
             mean: means::normal(&panels.curves, forces, window)
-                .filter(|_| !drawn.has_duration)
+                .filter(|_| drawn.rings && !drawn.has_duration)
                 .map(|means| Column::of(&means, SEEN)),
             tangential: Column::of(&forces.tangential, SEEN_BELOW_PEAKS),
+            impacts: (!forces.impacts.is_empty()).then(|| Column::of(&forces.impacts, SEEN)),
             state: state.collect(),
         })
     });
@@ -229,8 +244,16 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         units: panels.force_units.clone(),
         window: with_digits(window, "s", 3),
         bucket: with_digits(panels.curves.longest_bucket(), "s", 2),
+        impulse_unit: panels.impulse_unit,
+        springs: (0..recorder.scenery.contacts.len())
+            .filter(|pair| recorder.scenery.contacts[*pair].has_duration)
+            .collect(),
+        forceless: (0..panels.normal.len()).filter(|pair| !panels.normal[*pair]).collect(),
         frictionless: (0..panels.tangential.len()).filter(|pair| !panels.tangential[*pair]).collect(),
-        redundant: (0..panels.redundant.len()).filter(|pair| panels.redundant[*pair][0]).collect(),
+        redundant: (0..panels.redundant.len()).filter(|pair| panels.redundant[*pair].forces).collect(),
+        shares: (0..panels.redundant.len())
+            .filter(|pair| panels.redundant[*pair].shares && !panels.redundant[*pair].forces)
+            .collect(),
         points: points.collect(),
     }
 }

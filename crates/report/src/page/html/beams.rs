@@ -3,7 +3,8 @@
 use super::rocking::decimals;
 use crate::page::panels::length_unit;
 use crate::page::recorder::PageRecorder;
-use crate::page::{rounded, span};
+use crate::page::span;
+use crate::verdict::percent;
 use crate::{Summary, with_digits};
 use std::fmt::Write;
 use teeter_plot::escaped;
@@ -27,7 +28,7 @@ pub(super) fn borne(recorder: &PageRecorder, summary: &Summary) -> String {
         let largest = borne.largest_stress?;
         let part = borne.part_of_yield_strength.map(|part| {
             let class = if part > 1.0 { " class=\"bad\"" } else { "" };
-            format!(", <span{class}>{} % of the yield strength</span>", rounded(100.0 * part, 3))
+            format!(", <span{class}>{} of the yield strength</span>", percent(part, &summary.verdict))
         });
         let name = if several { format!("{}: largest", escaped(&borne.beam)) } else { "Largest".to_owned() };
         Some(format!(
@@ -41,11 +42,17 @@ pub(super) fn borne(recorder: &PageRecorder, summary: &Summary) -> String {
         ))
     });
     let stresses: String = stresses.collect();
+    let depends = if summary.impact_count > 0 {
+        "<p class=\"note\">With impacts it depends on the step and on the elements: compare with shorter steps and more \
+         elements before it is used.</p>\n"
+    } else {
+        ""
+    };
     if !stresses.is_empty() {
         let _ = writeln!(
             html,
             "<section id=\"stress\" class=\"panel\" aria-labelledby=\"stress-title\">\n<h3 id=\"stress-title\">Stress</h3>\n\
-             {stresses}</section>"
+             {stresses}{depends}</section>"
         );
     }
     if let Some(figure) = span::envelopes(recorder, "envelopes").map(span::on_page) {
@@ -96,9 +103,11 @@ fn reactions(recorder: &PageRecorder, summary: &Summary) -> String {
         let cells: String = columns.iter().map(|column| format!("<td>{}</td>", column[number])).collect();
         let _ = writeln!(html, "<tr data-beam=\"{name}\" data-x=\"{}\">{head}{cells}</tr>", range.x);
     }
-    html.push_str(
+    let grows = if summary.impact_count > 0 { ": an impact\u{2019}s peak grows as the step shrinks" } else { "" };
+    let _ = write!(
+        html,
         "</tbody></table></div>\n<p class=\"note\">Of the support on the beam: force upwards, couple counter-clockwise. Means over a \
-         step: an impact\u{2019}s peak grows as the step shrinks.</p>\n</section>",
+         step{grows}.</p>\n</section>"
     );
     html
 }

@@ -102,7 +102,9 @@ pub(super) fn rocking(cycles: &[HalfCycle], recorder: &PageRecorder, dt: f64) ->
     } else {
         ""
     });
-    html.push_str(if hits {
+    html.push_str(if hits && !scenery.driven.is_empty() {
+        "A base that gives way spreads the loss over the half cycle: the ratio is then nearer to 1."
+    } else if hits {
         "A base that gives way spreads the loss over the half cycle: the ratio is then nearer to 1, and the decay from peak to peak tells \
          what is lost."
     } else {

@@ -2,6 +2,7 @@
 
 use super::{scientific, with_code, with_prefix};
 use crate::page::{content, rounded};
+use crate::verdict::{BodyVerdict, Fate, ROCKED};
 use crate::{Summary, shortest, with_digits};
 use serde_json::Value;
 use std::fmt::Write;
@@ -34,8 +35,8 @@ impl Numbers {
         }
     }
 
-    /// The paths of all single values that no tile shows.
-    fn others(&self) -> Vec<String> {
+    /// The paths of all single values that no tile shows, nor would if they had a meaning for the scene.
+    fn others(&self, summary: &Summary) -> Vec<String> {
         fn walk(value: &Value, path: &str, out: &mut Vec<String>) {
             match value {
                 Value::Object(map) => {
@@ -51,6 +52,9 @@ impl Numbers {
         let mut paths = Vec::new();
         walk(&self.0, "", &mut paths);
         paths.retain(|path| {
+            if path == "reclosure_count" && stood_still(summary) {
+                return true;
+            }
             let elsewhere = [&TILES[..], &CLOCKED, &HEADED].iter().any(|paths| paths.contains(&path.as_str()));
             !elsewhere && !path.starts_with("model.")
         });
@@ -75,6 +79,9 @@ const TILES: [&str; 13] = [
     "contact.max_iterations",
 ];
 
+/// What contacts are called that a step or chatter lost for a moment.
+const RECLOSURES: &str = "Contacts lost and found again";
+
 /// The first tile that is of the computation.
 const NUMERIC: usize = 7;
 
@@ -83,10 +90,48 @@ fn above_rounding(value: f64, scale: f64, unit: &str) -> String {
     with_prefix(if content::holds(value.abs(), scale) { value } else { 0.0 }, unit)
 }
 
-/// `smallest`: the largest distance from the mass centre to the outline of the smallest block, m.
-pub(super) fn tiles(values: &Numbers, summary: &Summary, smallest: f64) -> String {
+/// Whether all blocks stood still throughout: that contacts were lost and found again is then rounding, and no number of the motion.
+fn stood_still(summary: &Summary) -> bool {
+    !summary.verdict.is_empty() && summary.rests_from == Some(0.0)
+}
+
+/// A number with as many digits as the headline gives it.
+fn as_told(x: f64, unit: &str) -> String {
+    with_digits(x, unit, 4).replace('-', "\u{2212}")
+}
+
+/// The tiles of the block that slid farthest, of those that didn't overturn or fall: how far, and how fast it slides on.
+fn sliding(summary: &Summary) -> Vec<(String, &'static str, String)> {
+    let slid = summary.verdict.iter().enumerate().filter(|(_, of)| of.what == Fate::Slid);
+    let far = |of: &BodyVerdict| of.slid.map_or(0.0, f64::abs);
+    let Some((number, of)) = slid.max_by(|a, b| far(a.1).total_cmp(&far(b.1))) else { return Vec::new() };
+    let tile = |key: &str, label, value: Option<f64>, unit| {
+        value.map(|value| (format!("verdict.{number}.{key}"), label, as_told(value, unit)))
+    };
+    let [slid, farthest] = [of.slid, of.farthest].map(|way| way.map(f64::abs));
+    let tiles = [
+        tile("slid", "Slid by", slid, "m"),
+        tile("farthest", "Slid at most", farthest, "m"),
+        tile("speed", "Speed at the end", of.speed, "m/s"),
+    ];
+    tiles.into_iter().flatten().collect()
+}
+
+/// `smallest`: the largest distance from the mass centre to the outline of the smallest block, m. `strikers`: what strikes, in
+/// words after "Impacts".
+pub(super) fn tiles(values: &Numbers, summary: &Summary, smallest: f64, strikers: &str) -> String {
     let mut html = String::new();
-    let seconds = |t: Option<f64>| t.map(|t| with_prefix(t, "s"));
+    let seconds = |t: Option<f64>| t.map(|t| as_told(t, "s"));
+    for (path, label, shown) in sliding(summary) {
+        let _ = writeln!(
+            html,
+            "<div class=\"tile\"><dt>{label}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{shown}</dd></div>",
+            escaped(&values.text(&path))
+        );
+    }
+    let impacts = format!("Impacts{strikers}");
+    // What overturned or slides has gone past its critical angle, or not come near it.
+    let rocks = summary.overturned_at.is_none();
     // Without contacts their numbers would all be 0.
     let touches = !summary.model.contacts.is_empty() || summary.contact.max_contacts > 0;
     let of_contacts = ["impact_count", "reclosure_count", "max_penetration"];
@@ -95,14 +140,18 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, smallest: f64) -> Strin
             continue;
         }
         let (label, shown) = match path {
-            "deflections.0.w" => ("Largest deflection", summary.deflections.first().map(|of| with_prefix(of.w, "m"))),
-            "max_phi_over_alpha" => ("Largest φ/α", summary.max_phi_over_alpha.and_then(share_of_critical_angle)),
+            "deflections.0.w" => ("Largest deflection", summary.deflections.first().map(|of| as_told(of.w, "m"))),
+            "max_phi_over_alpha" => {
+                ("Largest φ/α", summary.max_phi_over_alpha.filter(|_| rocks).and_then(share_of_critical_angle))
+            }
             "overturned_at" => ("First overturned at", seconds(summary.overturned_at)),
             "rests_from" => ("All at rest from", seconds(summary.rests_from)),
             "energy.lost" => ("Energy lost", Some(above_rounding(summary.energy.lost, summary.energy.scale, "J"))),
-            "impact_count" => ("Impacts of corners", Some(summary.impact_count.to_string())),
+            "impact_count" => (impacts.as_str(), Some(summary.impact_count.to_string())),
             "horizon" => ("Predictable up to", seconds(summary.horizon)),
-            "reclosure_count" => ("Contacts lost and found again", Some(summary.reclosure_count.to_string())),
+            "reclosure_count" => {
+                (RECLOSURES, Some(summary.reclosure_count.to_string()).filter(|_| !stood_still(summary)))
+            }
             "max_penetration" => ("Deepest penetration", Some(above_rounding(summary.max_penetration, smallest, "m"))),
             "energy.largest_residual" => ("Energy residual", Some(scientific(summary.energy.largest_residual))),
             "contact.unconverged_steps" => ("Steps not solved", Some(summary.contact.unconverged_steps.to_string())),
@@ -124,7 +173,8 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, smallest: f64) -> Strin
 }
 
 /// What the values of the table are, in words. One that has none here goes by its path.
-const NAMES: [(&str, &str); 18] = [
+const NAMES: [(&str, &str); 19] = [
+    ("reclosure_count", RECLOSURES),
     ("scheme", "Time scheme"),
     ("dt", "Step"),
     ("steps", "Steps"),
@@ -147,7 +197,7 @@ const NAMES: [(&str, &str); 18] = [
 
 pub(super) fn numbers(values: &Numbers, summary: &Summary) -> String {
     let mut html = String::new();
-    for path in values.others() {
+    for path in values.others(summary) {
         let text = values.text(&path);
         // For people; the file, and `data-value`, have all digits.
         let shown = match (text.parse::<f64>(), unit_of(&path)) {
@@ -177,7 +227,7 @@ fn unit_of(path: &str) -> Option<&'static str> {
     }
 }
 
-/// φ/α for people; nothing of less than a thousandth, which is rounding or hardly seen: such a block doesn't rock.
+/// φ/α for people; nothing of less than a hundredth: such a block doesn't rock, in a word.
 fn share_of_critical_angle(share: f64) -> Option<String> {
-    (share >= 1e-3).then(|| rounded(share, 3).to_string())
+    (share >= ROCKED).then(|| rounded(share, 3).to_string())
 }

@@ -1,13 +1,17 @@
 //! Plots of what bodies bear, of slip, and of energies.
 
-use super::Curves;
+use super::{Curves, ForceCurve};
 use super::{Line, Panels, Place, TimePanel, length_unit, prefix};
 use crate::page::content::{ROUNDING, holds, largest};
 use crate::page::recorder::{ENERGIES, PageRecorder};
 use crate::sections::Kind;
+use teeter_integrator::ContactState;
 
 /// Scale of slip, in sizes of a block: the rounding of each step adds up over a run, and that of what sticks under impacts all the more.
 const SLIP_SCALE: f64 = 100.0;
+
+/// This many times as much where a point never slips by its state.
+const STUCK_SCALE: f64 = 100.0;
 
 /// What is said of it then.
 const SHARED: &str = "in impacts, only contact + friction is dissipated: either may rise";
@@ -27,18 +31,26 @@ impl Panels {
             let rounding = ROUNDING * SLIP_SCALE * scenery.blocks[contact.block].reach;
             let own = &mut self.forces[contact.first..contact.first + contact.points.len()];
             own.iter_mut().flatten().for_each(|forces| forces.stick_within(rounding));
+            // What a step of the force gives anyway is no impact worth a plot.
+            let of_step = self.curves.step() * largest(own.iter().flatten().flat_map(|forces| &forces.normal));
+            if largest(own.iter().flatten().flat_map(|forces| &forces.impacts)) <= of_step {
+                own.iter_mut().flatten().for_each(|forces| forces.impacts.clear());
+            }
         }
         for (pair, contact) in scenery.contacts.iter().enumerate() {
-            let points = contact.points.iter().enumerate();
-            let points: Vec<_> =
-                points.filter_map(|(k, point)| Some((k, point, self.forces[contact.first + k].as_ref()?))).collect();
+            let points = contact.points.iter().zip(&self.forces[contact.first..]);
+            let points = points.filter_map(|(point, forces)| Some((point, forces.as_ref()?)));
+            // By the numbers of those that touch, as in the plots of their forces.
+            let points: Vec<_> = points.enumerate().map(|(k, (point, forces))| (k, point, forces)).collect();
             if points.is_empty() {
                 continue;
             }
             let name = format!("{} on {}", scenery.blocks[contact.block].name, contact.surface);
             let of = || several.then(|| (name.clone(), "contacts"));
             let normal = largest(points.iter().flat_map(|(_, _, forces)| &forces.normal));
-            if !holds(normal, strongest) {
+            self.normal[pair] = holds(normal, strongest);
+            // Of some only impacts are known, as of balls that strike each other.
+            if !self.normal[pair] && points.iter().all(|(_, _, forces)| forces.impacts.is_empty()) {
                 left_out.push(("force of", of(), normal, "N"));
                 self.forces[contact.first..contact.first + contact.points.len()].fill(None);
                 continue;
@@ -50,7 +62,12 @@ impl Panels {
             }
             let reach = scenery.blocks[contact.block].reach;
             let scale = SLIP_SCALE * reach;
-            let slipping: Vec<_> = points.iter().filter(|(_, _, forces)| holds(largest(&forces.slip), scale)).collect();
+            // Where no point slips by its state, the rounding of what sticks has added up.
+            let slips = |forces: &ForceCurve| {
+                let sticks = !forces.state.contains(&ContactState::Slip);
+                holds(largest(&forces.slip), if sticks { STUCK_SCALE * scale } else { scale })
+            };
+            let slipping: Vec<_> = points.iter().filter(|(_, _, forces)| slips(forces)).collect();
             if slipping.is_empty() {
                 let most = largest(points.iter().flat_map(|(_, _, forces)| &forces.slip));
                 left_out.push(("slip of", of(), most, "m"));

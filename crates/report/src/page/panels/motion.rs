@@ -5,6 +5,7 @@ use crate::driven::Driven;
 use crate::page::content::{ROUNDING, holds, largest, travel};
 use crate::page::orbit::Point;
 use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, BLOCK_FRAME, PageRecorder};
+use crate::page::scenery::FREE;
 use std::collections::BTreeSet;
 
 /// A coordinate of a block.
@@ -24,7 +25,7 @@ struct Coordinate {
 const COORDINATES: [Coordinate; 3] = [
     Coordinate {
         id: "x",
-        of: "x of",
+        of: "change of x of",
         velocity_id: "vx",
         symbol: "x",
         velocity_symbol: "ẋ",
@@ -34,7 +35,7 @@ const COORDINATES: [Coordinate; 3] = [
     },
     Coordinate {
         id: "y",
-        of: "y of",
+        of: "change of y of",
         velocity_id: "vy",
         symbol: "y",
         velocity_symbol: "ẏ",
@@ -44,7 +45,7 @@ const COORDINATES: [Coordinate; 3] = [
     },
     Coordinate {
         id: "phi",
-        of: "φ of",
+        of: "change of φ of",
         velocity_id: "omega",
         symbol: "φ",
         velocity_symbol: "ω",
@@ -144,7 +145,11 @@ impl Panels {
             } else {
                 "midspan".to_owned()
             };
-            let places = std::iter::once(middle).chain(beam.probes.iter().map(|(x, _)| recorder.place(*x)));
+            let place = |x: f64| {
+                let end = [0.0, beam.span].iter().zip(beam.supports).any(|(end, support)| *end == x && support == FREE);
+                format!("{}{}", if end { "free end, " } else { "" }, recorder.place(x))
+            };
+            let places = std::iter::once(middle).chain(beam.probes.iter().map(|(x, _)| place(*x)));
             for (k, place) in places.enumerate() {
                 let values = self.curves.curve(first + k);
                 let label = if several { format!("{} {place}", beam.name) } else { place.clone() };
