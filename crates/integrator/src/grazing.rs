@@ -1,6 +1,7 @@
 //! Contacts that are there only because a body has sunk into another one.
 
 use crate::closed_step::{find, moving};
+use crate::stage::RESERVED_CONTACTS;
 use crate::{Mismatch, Model, Vector, Workspace};
 use teeter_detect::{BodyId, Candidate, Candidates, ContactId};
 
@@ -23,8 +24,9 @@ pub(crate) struct Grazing<const D: usize> {
 }
 
 impl<const D: usize> Grazing<D> {
-    /// Makes room for so many contacts.
+    /// Makes room for so many contacts; of many, few are crossed by others.
     pub(crate) fn reserve(&mut self, contacts: usize) {
+        let contacts = contacts.min(RESERVED_CONTACTS);
         self.suspects.reserve(contacts);
         self.located.reserve(contacts);
         self.rooms.reserve(contacts);

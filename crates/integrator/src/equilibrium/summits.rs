@@ -1,9 +1,8 @@
 //! Where an elastic surface has come out under a base.
 
-use crate::{Model, Vector};
-use teeter_detect::{Candidate, ContactId};
-
 use super::between;
+use crate::{Model, Vector};
+use teeter_detect::{Anchor, Candidate, ContactId, Frame, Geometry};
 
 /// A summit within this part of the base's reach of an earlier one is that one.
 const SAME: f64 = 1e-3;
@@ -13,8 +12,45 @@ const SAME: f64 = 1e-3;
 struct Summit<const D: usize> {
     /// Where it was last, with an identity of its own.
     candidate: Candidate<D>,
+    /// Its frame in the coordinates of the base.
+    on_base: Frame<D>,
     /// Its identity among the candidates of this round, if it is one of them.
     now: Option<ContactId>,
+}
+
+impl<const D: usize> Summit<D> {
+    fn found(model: &Model<D>, q: &[f64], candidate: &Candidate<D>, id: ContactId) -> Self {
+        let on_base = candidate.frame * turn(model, q, &candidate.sides[0]);
+        Self { candidate: Candidate { id, ..*candidate }, on_base, now: Some(candidate.id) }
+    }
+
+    /// Takes its place at `q`: the same point of the surface, and what of the base is over it by now.
+    fn follow(&mut self, model: &Model<D>, q: &[f64]) {
+        let candidate = &mut self.candidate;
+        candidate.frame = self.on_base * turn(model, q, &candidate.sides[0]).transpose();
+        let mut apart: Vector<D> = candidate.frame * between(model, q, &candidate.sides);
+        candidate.gap = apart[0];
+        apart[0] = 0.0;
+        candidate.sides[0].point -= self.on_base.transpose() * apart;
+    }
+}
+
+/// The rotation of a body, from its coordinates to the world's.
+fn turn<const D: usize>(model: &Model<D>, q: &[f64], at: &Anchor<D>) -> Frame<D> {
+    let placed = model.placed_at(q);
+    let place = |point: Vector<D>| {
+        let mut place = [Vector::zeros()];
+        placed.place(at.body, &[point], &mut place);
+        place[0]
+    };
+    let origin = place(Vector::zeros());
+    let mut turn = Frame::<D>::zeros();
+    for k in 0..D {
+        let mut axis = Vector::<D>::zeros();
+        axis[k] = 1.0;
+        turn.set_column(k, &(place(axis) - origin));
+    }
+    turn
 }
 
 /// All summits that were found so far.
@@ -44,18 +80,16 @@ impl<const D: usize> Summits<D> {
             };
             let number = self.known.len() as u32;
             if let Some(summit) = self.known.iter_mut().find(near) {
-                let id = summit.candidate.id;
-                *summit = Summit { candidate: Candidate { id, ..*candidate }, now: Some(candidate.id) };
+                *summit = Summit::found(model, q, candidate, summit.candidate.id);
             } else {
                 let id = ContactId::new(candidate.id.pair(), u32::MAX - number);
-                self.known.push(Summit { candidate: Candidate { id, ..*candidate }, now: Some(candidate.id) });
+                self.known.push(Summit::found(model, q, candidate, id));
             }
         }
         candidates.retain(|candidate| !is_summit(candidate));
         for summit in &mut self.known {
             if summit.now.is_none() {
-                let apart: Vector<D> = summit.candidate.frame * between(model, q, &summit.candidate.sides);
-                summit.candidate.gap = apart[0];
+                summit.follow(model, q);
             }
             if summit.candidate.gap <= margin {
                 candidates.push(summit.candidate);

@@ -395,7 +395,7 @@ fn a_block_across_an_inner_support_starts_at_rest() {
         (phi / -8.0077e-4 - 1.0).abs() < 1e-3 && (elastic / 2.3579e-3 - 1.0).abs() < 1e-3,
         "{phi:e} rad, {elastic:e} J"
     );
-    assert!(moved.abs() < 1e-7, "turned by {moved:e} rad");
+    assert!(moved.abs() < 1e-6, "turned by {moved:e} rad");
     // Over the support the beam stays straight, and all of the weight is there.
     let (phi, elastic, _) = run("0.5", "4000");
     assert!(phi.abs() < 1e-12 && elastic < 1e-12, "{phi:e} rad, {elastic:e} J");
