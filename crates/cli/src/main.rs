@@ -495,7 +495,8 @@ fn explain(error: &clap::Error) -> ExitCode {
         && error.kind() == clap::error::ErrorKind::UnknownArgument
         && matches!(word.as_str(), "--version" | "-V")
     {
-        Console::new(false).error("error: commands have no version of their own: `teeter --version` tells that of the program");
+        Console::new(false)
+            .error("error: commands have no version of their own: `teeter --version` tells that of the program");
         return Exit::BadInput.into();
     }
     match error.print() {

@@ -14,7 +14,8 @@ use teeter_run::SceneSource;
 use teeter_scenario::diagnostic::Diagnostics;
 use teeter_study::sweep::{
     Ensemble, FIGURE_FILES, FILES, IDENTITY, Journal, JournalError, RESULTS, Shard, Sweep, SweepIdentity, Tally,
-    ended_study, incomparable, matching_files, merge, run_cases, study_figures, study_page, write_parquet, write_results,
+    ended_study, incomparable, matching_files, merge, run_cases, study_figures, study_page, write_parquet,
+    write_results,
 };
 use teeter_study::{StudyScene, runner};
 

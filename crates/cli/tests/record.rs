@@ -85,7 +85,10 @@ fn a_page_and_figures_are_written_where_asked_and_not_overwritten() {
     assert!(text.contains("m/s^2, as the file names none; --unit gives another"), "{text}");
     let part = |arguments: &[&str]| String::from_utf8(record(&folder, arguments).stdout).unwrap();
     let past = part(&["a.csv", "--from", "0.5 s", "--to", "9 s", "--unit", "gal"]);
-    assert!(past.contains("part used             500 ms to 2 s, where the record ends") && !past.contains("--unit"), "{past}");
+    assert!(
+        past.contains("part used             500 ms to 2 s, where the record ends") && !past.contains("--unit"),
+        "{past}"
+    );
     let between = part(&["a.csv", "--from", "0.7 s"]);
     assert!(between.contains("1 s to 2 s: the values between these times, as none is interpolated"), "{between}");
     for file in ["record.json", "record.csv", "record.html", "figures/records.svg", "figures/spectra.svg"] {

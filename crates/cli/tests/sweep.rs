@@ -118,7 +118,8 @@ fn cases_that_warn_are_counted_by_the_kinds_of_warnings() {
     let folder = study("warnings", sweep);
     let told = done(&folder, &["sweep", "sweep.toml", "--out", "all"]);
     // The column before the last, `error`.
-    let codes: Vec<String> = table(&folder.join("all/results.csv")).iter().map(|row| row[row.len() - 2].clone()).collect();
+    let codes: Vec<String> =
+        table(&folder.join("all/results.csv")).iter().map(|row| row[row.len() - 2].clone()).collect();
     assert_eq!((codes[0].as_str(), codes[1].as_str()), ("warnings", ""), "{codes:?}");
     assert!(codes[2..].iter().all(|codes| codes.split(' ').any(|code| code == "scene")), "{codes:?}");
     assert!(told.contains("warning: 2 of 3 cases warn: ") && told.contains("scene (2)"), "{told}");

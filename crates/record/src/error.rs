@@ -142,7 +142,9 @@ pub enum RecordError {
         found: usize,
     },
     /// A unit in a heading that may also be a part of the name.
-    #[error("line {line}: is `{unit}` in the heading `{heading}` a unit? A unit stands in brackets, such as `a [{unit}]`")]
+    #[error(
+        "line {line}: is `{unit}` in the heading `{heading}` a unit? A unit stands in brackets, such as `a [{unit}]`"
+    )]
     UnitWithoutBrackets {
         /// The line.
         line: usize,

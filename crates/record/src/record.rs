@@ -58,7 +58,14 @@ impl Record {
         if let Some(&value) = accelerations.iter().find(|a| !(a.abs() <= LARGEST_ACCELERATION)) {
             return Err(RecordError::Value { line: 0, value });
         }
-        Ok(Self { name: name.to_owned(), station: String::new(), description: String::new(), dt, accelerations, unit_assumed: false })
+        Ok(Self {
+            name: name.to_owned(),
+            station: String::new(),
+            description: String::new(),
+            dt,
+            accelerations,
+            unit_assumed: false,
+        })
     }
 
     /// Reads a file of any known [`Format`], recognised by its content; `name` is the record's name

@@ -102,7 +102,8 @@ pub(crate) fn read(text: &str, settings: &ReadSettings<'_>) -> Result<Record, Re
 fn follows_along_lines(text: &str, separator: Separator) -> bool {
     /// Along the lines values are one step apart, along a column at least three.
     const NEARER: f64 = 0.5;
-    let rows = text.lines().map(|text| text.split('#').next().unwrap_or_default().trim()).filter(|text| !text.is_empty());
+    let rows =
+        text.lines().map(|text| text.split('#').next().unwrap_or_default().trim()).filter(|text| !text.is_empty());
     let (mut along, mut below) = (0.0, 0.0);
     let mut before: Option<[f64; 2]> = None;
     for row in rows {
@@ -155,7 +156,11 @@ fn layout_of(
     let acceleration = match settings.component {
         None if columns <= 2 => first,
         None => {
-            return Err(RecordError::SeveralColumns { line, found: columns, known: known_columns(first..columns, &names) });
+            return Err(RecordError::SeveralColumns {
+                line,
+                found: columns,
+                known: known_columns(first..columns, &names),
+            });
         }
         Some(component) => column_of(component, first..columns, &names)?,
     };
@@ -222,10 +227,9 @@ fn column_of(component: &str, columns: std::ops::Range<usize>, names: &[String])
     let wanted = component.trim().to_lowercase();
     let by_name = columns.clone().find(|k| names.get(*k).is_some_and(|name| title(name) == wanted));
     let by_number = wanted.parse::<usize>().ok().and_then(|k| k.checked_sub(1)).filter(|k| columns.contains(k));
-    by_name.or(by_number).ok_or_else(|| RecordError::Component {
-        component: shown(component),
-        known: known_columns(columns, names),
-    })
+    by_name
+        .or(by_number)
+        .ok_or_else(|| RecordError::Component { component: shown(component), known: known_columns(columns, names) })
 }
 
 /// The text of a heading without quotes.
@@ -406,7 +410,10 @@ mod tests {
             read("EW", Some(0.01), None).unwrap_err(),
             "line 1: the unit is `g` by the heading: omit the given one"
         );
-        assert_eq!(read("5", None, None).unwrap_err(), "there is no component `5`: the file has ew (column 2), ns (column 3), ud (column 4)");
+        assert_eq!(
+            read("5", None, None).unwrap_err(),
+            "there is no component `5`: the file has ew (column 2), ns (column 3), ud (column 4)"
+        );
         assert!(read("1", None, None).is_err(), "the first column has the times");
         let twice = read("NS", None, Some(0.1)).unwrap_err();
         assert!(twice.contains("has its own step, 0.5 s"), "the heading says so: {twice}");
@@ -472,10 +479,7 @@ mod tests {
                 .unwrap_err()
                 .starts_with("line 3: the time 0.1 s doesn't fit a uniform step")
         );
-        assert_eq!(
-            read("1,1\n0.9,1\n0.8,1\n").unwrap_err(),
-            "line 2: the times descend, from 1 s to 0.9 s"
-        );
+        assert_eq!(read("1,1\n0.9,1\n0.8,1\n").unwrap_err(), "line 2: the times descend, from 1 s to 0.9 s");
         assert!(read("0,1\n0,1\n").unwrap_err().starts_with("line 2: the time 0 s doesn't fit a uniform step"));
     }
 
@@ -495,7 +499,11 @@ mod tests {
             "line 2: 3 columns: which of them is the acceleration? The file has ns (column 2), ew (column 3)"
         );
         assert!(message("0 7 2\n1 8 3\n").ends_with("The file has column 2, column 3"));
-        for (text, unit) in [("time_s,acc_g\n0,1\n1,2\n", "g"), ("t,acceleration cm/s2\n0,1\n1,2\n", "cm/s2"), ("t_ms,a\n0,1\n1,2\n", "ms")] {
+        for (text, unit) in [
+            ("time_s,acc_g\n0,1\n1,2\n", "g"),
+            ("t,acceleration cm/s2\n0,1\n1,2\n", "cm/s2"),
+            ("t_ms,a\n0,1\n1,2\n", "ms"),
+        ] {
             assert!(message(text).starts_with(&format!("line 1: is `{unit}` in the heading")), "{}", message(text));
         }
         assert_eq!(message("t,a\n0,1\n1,high\n"), "line 3: `high` is not a number");

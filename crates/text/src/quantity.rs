@@ -432,8 +432,7 @@ mod tests {
 
     #[test]
     fn a_suggested_unit_has_the_expected_dimension() {
-        let suggested =
-            |text: &str, wanted| parse(text, wanted).unwrap_err().did_you_mean().map(str::to_owned);
+        let suggested = |text: &str, wanted| parse(text, wanted).unwrap_err().did_you_mean().map(str::to_owned);
         assert_eq!(suggested("4 dg", Dimension::ANGLE).as_deref(), Some("deg"));
         assert_eq!(suggested("36 in", Dimension::LENGTH), None);
         assert_eq!(suggested("69 Gpa", Dimension::PRESSURE).as_deref(), Some("GPa"));

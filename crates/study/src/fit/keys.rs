@@ -58,7 +58,14 @@ impl FitKey {
             return Err(format!("the lower bound of {key} must be below the upper one"));
         }
         let logarithmic = low.value > 0.0 && high.value / low.value >= LOGARITHMIC_FROM;
-        Ok(Self { key: key.to_owned(), low: low.value, high: high.value, unit: high, logarithmic, typed: text.trim().to_owned() })
+        Ok(Self {
+            key: key.to_owned(),
+            low: low.value,
+            high: high.value,
+            unit: high,
+            logarithmic,
+            typed: text.trim().to_owned(),
+        })
     }
 
     /// The path of the key.

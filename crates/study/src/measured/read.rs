@@ -388,7 +388,9 @@ impl Columns<'_> {
             None => 1.0,
             Some(unit) => factor(unit).map_err(|error| {
                 let remedy = match unit {
-                    "px" | "pixel" | "pixels" => "; give the length of a pixel instead, such as unit = \"0.21 mm\"".to_owned(),
+                    "px" | "pixel" | "pixels" => {
+                        "; give the length of a pixel instead, such as unit = \"0.21 mm\"".to_owned()
+                    }
                     _ => remedy(&error),
                 };
                 MeasuredError::Columns(format!("the unit `{}` of {what}: {error}{remedy}", printable(unit)))

@@ -55,7 +55,14 @@ impl SweepIdentity {
     /// the scene and of the files that it reads.
     pub fn new<'a>(sweep: &str, inputs: impl IntoIterator<Item = &'a [u8]>, cases: u64, shard: Shard) -> Self {
         let inputs = content_hash(inputs).iter().map(|byte| format!("{byte:02x}")).collect();
-        Self { title: String::new(), program: env!("CARGO_PKG_VERSION").to_owned(), sweep: sweep.to_owned(), inputs, cases, shard }
+        Self {
+            title: String::new(),
+            program: env!("CARGO_PKG_VERSION").to_owned(),
+            sweep: sweep.to_owned(),
+            inputs,
+            cases,
+            shard,
+        }
     }
 
     /// The same study with a title.

@@ -285,7 +285,11 @@ fn headline(comparison: &Comparison) -> String {
     let d = found.differences;
     let (unit, factor) = found.channel.shown();
     let gap = if unit == "°" { "" } else { "\u{a0}" };
-    let share = if d.rms < MOST_SHARE * d.scale { format!(", {} of the largest", percent(d.rms / d.scale)) } else { String::new() };
+    let share = if d.rms < MOST_SHARE * d.scale {
+        format!(", {} of the largest", percent(d.rms / d.scale))
+    } else {
+        String::new()
+    };
     let last = comparison.measured.t.get(comparison.rows.end.saturating_sub(1)).copied().unwrap_or(0.0);
     let mut text = format!(
         "{}: root mean square difference {}{gap}{unit}{share}, up to t = {}\u{a0}s",

@@ -143,8 +143,7 @@ mod tests {
             "the quantity of [distribution] is Final φ of a (rad) in `one`, but Largest |ω| of a (rad/s) in `two`"
         );
         assert_eq!(why(&of("end"), &bands("a.omega")), None, "no figure in common");
-        let fragility =
-            |event: &str, over: &str| format!("[fragility]\nevent = {event}\nintensity = \"{over}\"\n");
+        let fragility = |event: &str, over: &str| format!("[fragility]\nevent = {event}\nintensity = \"{over}\"\n");
         let above = "{ output = \"end\", above = 0.1 }";
         let events = why(&fragility("\"overturned\"", "block.a.tilt"), &fragility(above, "block.a.tilt")).unwrap();
         assert_eq!(

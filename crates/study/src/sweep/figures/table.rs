@@ -18,7 +18,9 @@ pub enum TableError {
     #[error("the table has no column `status`: it is not the result of a sweep")]
     NoStatus,
     /// The columns of another version of the program.
-    #[error("its columns are not those that this program writes: run the study again, in another folder or with --force")]
+    #[error(
+        "its columns are not those that this program writes: run the study again, in another folder or with --force"
+    )]
     OtherColumns,
 }
 
@@ -72,7 +74,10 @@ impl StudyTable {
     #[must_use]
     pub fn warned(&self) -> usize {
         let place = self.place("warnings");
-        self.rows.iter().filter(|row| place.and_then(|place| row.get(place)).is_some_and(|cell| !cell.is_empty())).count()
+        self.rows
+            .iter()
+            .filter(|row| place.and_then(|place| row.get(place)).is_some_and(|cell| !cell.is_empty()))
+            .count()
     }
 
     /// Number of cases that didn't run to their end.
