@@ -14,11 +14,11 @@ pub(crate) struct Animate {
     #[arg(long = "animate-width", value_name = "PX", default_value = "720", value_parser = width, requires = "file")]
     width: u32,
     /// Pictures of the animation a second; at most 1000 in all
-    #[arg(long = "animate-fps", value_name = "N", default_value = "25", value_parser = rate, requires = "file")]
+    #[arg(long = "animate-fps", value_name = "N", default_value = "25", value_parser = rate, requires = "file", allow_hyphen_values = true)]
     rate: f64,
     /// Speed of the animation: 1 is real time, 0.1 ten times slower (default: real time if that takes 5 to 20 s, else so much
     /// slower or faster)
-    #[arg(long = "animate-speed", value_name = "X", value_parser = speed, requires = "file")]
+    #[arg(long = "animate-speed", value_name = "X", value_parser = speed, requires = "file", allow_hyphen_values = true)]
     speed: Option<f64>,
 }
 

@@ -21,6 +21,11 @@ impl Console {
         !self.quiet && self.terminal
     }
 
+    /// Whether notes are left out.
+    pub(crate) fn is_quiet(self) -> bool {
+        self.quiet
+    }
+
     /// Prints a note, unless in quiet mode.
     pub(crate) fn note(self, text: &str) {
         if !self.quiet {

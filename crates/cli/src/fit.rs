@@ -139,10 +139,9 @@ fn load(options: &Options) -> Result<Loaded, String> {
         }
         let is_key = matches!(keys::find(key.key()), Some(PathTarget::Key(..)));
         if wrong.len() == 2 || (wrong.len() == 1 && is_key) {
-            // Found in a bound that was set, but not as such did the user write it.
+            // Found in a bound that was set, but the user wrote both.
             let finding: Diagnostic = wrong.swap_remove(0);
-            let range = Some(format!("{}={}..{}", key.key(), key.text(low), key.text(high)));
-            let finding = Diagnostic { set: range, option: "--vary", ..finding };
+            let finding = Diagnostic { set: Some(key.typed().to_owned()), option: "--vary", ..finding };
             return Err(Presenter::new(&text).one(&finding));
         }
     }

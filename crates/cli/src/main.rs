@@ -185,7 +185,7 @@ enum Command {
         force: bool,
     },
     /// Run a scene for many values of its keys; a table with a row for each case
-    #[command(after_help = SWEEP_HELP, args_conflicts_with_subcommands = true)]
+    #[command(after_help = SWEEP_HELP, args_conflicts_with_subcommands = true, override_usage = SWEEP_USAGE)]
     Sweep {
         /// The sweep file: a scene, the keys that vary, and the numbers wanted
         #[arg(value_name = "SWEEP.toml", required_unless_present_any = ["merge", "compare"], conflicts_with = "merge")]
@@ -476,6 +476,11 @@ const FIT_HELP: &str = "Examples:
 The time shift and the zero of the measured angle are fitted too, unless given. docs/fit.md describes the method and the
 results.";
 
+/// clap would put a sweep file into the line of `--merge`.
+const SWEEP_USAGE: &str = "teeter sweep [OPTIONS] <SWEEP.toml>
+       teeter sweep --merge <DIR>... --out <DIR>
+       teeter sweep --compare <DIR> <DIR>... --out <DIR>";
+
 pub(crate) fn key_value(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
@@ -485,6 +490,15 @@ pub(crate) fn key_value(text: &str) -> Result<(String, String), String> {
 
 /// Prints clap's help and version to standard output, errors of usage to standard error.
 fn explain(error: &clap::Error) -> ExitCode {
+    // Of a command clap would advise `-- --version`, as if it were a file.
+    if let Some(clap::error::ContextValue::String(word)) = error.get(clap::error::ContextKind::InvalidArg)
+        && error.kind() == clap::error::ErrorKind::UnknownArgument
+        && matches!(word.as_str(), "--version" | "-V")
+    {
+        Console::new(false)
+            .error("error: commands have no version of their own: `teeter --version` tells that of the program");
+        return Exit::BadInput.into();
+    }
     match error.print() {
         Err(why) if !error.use_stderr() && why.kind() != std::io::ErrorKind::BrokenPipe => {
             Console::new(false).error(&format!("error: can't write to standard output: {why}"));

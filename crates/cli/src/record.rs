@@ -67,7 +67,7 @@ pub(crate) fn record(options: &Options) -> Exit {
         .and_then(|bytes| record_alone(&name, &bytes, &options.keys));
     let scene = match found {
         Ok(scene) => scene,
-        Err(found) => return refused(&Presenter::new("").all(&found)),
+        Err(found) => return refused(&Presenter::new("").all(&as_options(found))),
     };
     let held = Held::new(&name, &scene, &options.keys);
     let results = match &options.out {
@@ -91,6 +91,19 @@ pub(crate) fn record(options: &Options) -> Exit {
             Exit::Failed
         }
     }
+}
+
+/// Remedies that name keys of a scene, with the options of this command instead.
+fn as_options(mut found: Diagnostics) -> Diagnostics {
+    for remedy in found.0.iter_mut().filter_map(|finding| finding.remedy.as_mut()) {
+        for key in ["step", "component", "period", "unit"] {
+            *remedy = remedy
+                .replace(&format!("add {key}, such as {key} = "), &format!("add --{key} "))
+                .replace(&format!("{key} = "), &format!("--{key} "));
+        }
+        *remedy = remedy.replace("leave this key out", "leave this option out");
+    }
+    found
 }
 
 /// What a record holds, as used.
@@ -121,6 +134,32 @@ impl<'a> Held<'a> {
         self.keys.iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ")
     }
 
+    /// The part that `--from` and `--to` leave, as it holds whole steps and ends with the file.
+    fn part(&self) -> Option<String> {
+        let time = |key: &str| {
+            let (_, text) = self.keys.iter().find(|(name, _)| name == key)?;
+            quantity::parse(text, Dimension::TIME).ok()
+        };
+        let (from, to) = (time("from"), time("to"));
+        from.or(to)?;
+        let dt = self.record().dt();
+        // As a cut does, which keeps the values between both times.
+        let start = (from.unwrap_or(0.0) / dt - 1e-6).ceil().max(0.0) * dt;
+        let end = start + self.record().duration();
+        let times = [start, end].map(|t| with_digits(t, "s", 9));
+        let ends = match to {
+            Some(to) if to >= end + (1.0 - 1e-6) * dt => ", where the record ends",
+            _ => "",
+        };
+        let off = |wanted: Option<f64>, got: f64| wanted.is_some_and(|t| (t - got).abs() > 1e-6 * dt);
+        let whole = if ends.is_empty() && (off(from, start) || off(to, end)) {
+            ": the values between these times, as none is interpolated"
+        } else {
+            ""
+        };
+        Some(format!("{} to {}{ends}{whole}", times[0], times[1]))
+    }
+
     fn text(&self) -> String {
         let (record, numbers) = (self.record(), &self.numbers);
         let [a, v, d] = [record.acceleration_peak(), record.velocity_peak(), record.displacement_peak()];
@@ -142,6 +181,12 @@ impl<'a> Held<'a> {
                 with_digits(record.duration(), "s", 9)
             ),
         );
+        if record.assumes_its_unit() {
+            row("unit", "m/s^2, as the file names none; --unit gives another".to_owned());
+        }
+        if let Some(part) = self.part() {
+            row("part used", part);
+        }
         if !self.keys.is_empty() {
             row("corrections", self.corrections());
         }

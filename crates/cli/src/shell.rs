@@ -38,7 +38,10 @@ fn write_pages(folder: &Path) -> io::Result<usize> {
         let name = format!("teeter-{}", command.get_name());
         // clap keeps names for the whole run of the program, as here.
         let page: &'static str = name.clone().leak();
-        pages.push((name, command.clone().name(page).version(env!("CARGO_PKG_VERSION"))));
+        let typed = format!("teeter {}", command.get_name());
+        // The version stands at the foot of the page; the option is the program's alone.
+        let command = command.clone().name(page).bin_name(typed).version(env!("CARGO_PKG_VERSION"));
+        pages.push((name, command.disable_version_flag(true)));
     }
     for (name, command) in &pages {
         let mut page = Vec::new();

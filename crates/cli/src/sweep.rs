@@ -14,7 +14,8 @@ use teeter_run::SceneSource;
 use teeter_scenario::diagnostic::Diagnostics;
 use teeter_study::sweep::{
     Ensemble, FIGURE_FILES, FILES, IDENTITY, Journal, JournalError, RESULTS, Shard, Sweep, SweepIdentity, Tally,
-    ended_study, matching_files, merge, run_cases, study_figures, study_page, write_parquet, write_results,
+    ended_study, incomparable, matching_files, merge, run_cases, study_figures, study_page, write_parquet,
+    write_results,
 };
 use teeter_study::{StudyScene, runner};
 
@@ -61,7 +62,7 @@ pub(crate) fn sweep(options: &Options) -> Exit {
     let exit = run(console, &study, &results, journal, options.jobs);
     // Of a shard they would be of a part of the cases.
     if exit == Exit::FinishedRun && study.sweep.wants_figures() && shard == Shard::ALL {
-        return draw(console, &results, &stem, options.figure_width);
+        return draw(console, &results, study.identity.title(), options.figure_width);
     }
     exit
 }
@@ -70,7 +71,7 @@ pub(crate) fn sweep(options: &Options) -> Exit {
 fn draw(console: Console, results: &Results, title: &str, figure_width: f64) -> Exit {
     let drawn = || -> Result<(), Box<dyn Error>> {
         let study = ended_study(results.folder(), "")?;
-        write_figures(results, title, &[study], figure_width)
+        write_figures(console, results, title, &[study], figure_width)
     };
     match drawn() {
         Ok(()) => {
@@ -84,8 +85,9 @@ fn draw(console: Console, results: &Results, title: &str, figure_width: f64) -> 
     }
 }
 
-/// Writes the figures of studies, their tables and their page; returns their notes.
+/// Writes the figures of studies, their tables and their page, and prints their notes.
 fn write_figures(
+    console: Console,
     results: &Results,
     title: &str,
     studies: &[Ensemble],
@@ -101,6 +103,9 @@ fn write_figures(
         }
     }
     results.write("study.html", study_page(title, studies, &figures))?;
+    if console.is_quiet() {
+        return Ok(());
+    }
     let notes: String = figures.iter().flat_map(|figure| &figure.notes).map(|note| format!("{note}\n")).collect();
     Ok(print(&notes)?)
 }
@@ -130,12 +135,16 @@ pub(crate) fn compare(folders: &[PathBuf], out: &Path, figure_width: f64, force:
         Ok(_) => {}
         Err(error) => return refused(format!("error: {error}")),
     }
+    if let Some(why) = incomparable(&studies) {
+        let help = "compare studies that ask for the same quantities";
+        return refused(format!("error: the figures can't be put side by side: {why}\n  help: {help}"));
+    }
     let results = match Results::create_of(&FIGURE_FILES, out, force) {
         Ok(results) => results,
         Err(error) => return refused(format!("error: {error}")),
     };
     let title = studies.iter().map(|study| study.name.as_str()).collect::<Vec<_>>().join(" and ");
-    match write_figures(&results, &title, &studies, figure_width) {
+    match write_figures(console, &results, &title, &studies, figure_width) {
         Ok(()) => {
             console.note(&format!("figures in {}", out.join("study.html").display()));
             Exit::FinishedRun
@@ -220,6 +229,12 @@ fn notes(console: Console, sweep: &Sweep, tally: &Tally) {
         let text = "steps that were not solved to tolerance: see `unsolved_steps`";
         console.note(&format!("{unsolved} {} {text}", have(*unsolved)));
     }
+    if tally.warned > 0 {
+        let warn = if tally.warned == 1 { "warns" } else { "warn" };
+        let codes: Vec<String> = tally.warnings.iter().map(|(code, count)| format!("{code} ({count})")).collect();
+        let see = "see the column `warnings`; `teeter run` of such a case tells more";
+        console.note(&format!("warning: {} of {cases} cases {warn}: {}; {see}", tally.warned, codes.join(", ")));
+    }
     if *several_limits > 0 {
         let text = "there are several limits: the lowest one seen is in the table, their number in `find.changes`";
         console.note(&format!("in {several_limits} of {cases} cases {text}"));
@@ -260,19 +275,19 @@ pub(crate) fn merge_shards(folders: &[PathBuf], out: &Path, figure_width: f64, f
         ));
         return Exit::BadInput;
     }
-    let merged = || -> Result<(bool, Results), JournalError> {
+    let merged = || -> Result<(bool, Results, String), JournalError> {
         let (table, identity) = merge(folders)?;
+        let title = SweepIdentity::from_json(&identity).map(|study| study.title().to_owned()).unwrap_or_default();
         let results = Results::create_of(&FILES, out, force)?;
         results.write(IDENTITY, identity)?;
         results.write(RESULTS, table)?;
         let study = ended_study(out, "")?;
         write_parquet(&results, &study.sweep)?;
-        Ok((study.sweep.wants_figures(), results))
+        Ok((study.sweep.wants_figures(), results, title))
     };
     match merged() {
-        Ok((figures, results)) => {
+        Ok((figures, results, title)) => {
             console.note(&format!("results in {}", out.join(RESULTS).display()));
-            let title = out.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
             if figures { draw(console, &results, &title, figure_width) } else { Exit::FinishedRun }
         }
         Err(error) => {
@@ -305,7 +320,8 @@ fn prepare(path: &Path, shard: Shard) -> Result<Study, String> {
     let source = StudyScene::with_files_of(bytes, scene.name(), scene.stem(), settings, &mut companions);
     sweep.check_keys(&source, &name).map_err(|found| present(&found))?;
     sweep.check_outputs(&source, &text, &name).map_err(|found| present(&found))?;
-    let identity = SweepIdentity::new(&text, source.contents(), sweep.cases(), shard);
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let identity = SweepIdentity::new(&text, source.contents(), sweep.cases(), shard).titled(&stem);
     let named = source.files().map(|file| scene.place(file));
     let inputs = [path.to_owned(), folder.join(sweep.scene())].into_iter().chain(named).collect();
     Ok(Study { sweep, source, identity, inputs })

@@ -461,7 +461,7 @@ fn bad_measured_tables_are_refused_with_their_line() {
     fit("contact.feet.friction=0.9..0.2", "the lower bound of contact.feet.friction must be below the upper one");
     fit("contact.feet.friction=-1..0.2", "must be at least 0");
     fit("contact.feet.friction=-1..0.2", "--vary contact.feet.friction=-1..0.2");
-    fit("block.rocker.height=-1 cm..2 cm", "--vary block.rocker.height=-1.0 cm..2.0 cm");
+    fit("block.rocker.height=-1 cm..2 cm", "--vary block.rocker.height=-1 cm..2 cm");
     fit("contact.feet.fricton=0.1..0.2", "did you mean `contact.feet.friction`?");
     fit("block.rocker.height=1 mm..2 cm", "have the units `mm` and `cm`");
     fit("contact.feet.friction", "write KEY=LOW..HIGH");

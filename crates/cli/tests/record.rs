@@ -82,6 +82,15 @@ fn a_page_and_figures_are_written_where_asked_and_not_overwritten() {
     assert!(printed.status.success(), "{}", String::from_utf8_lossy(&printed.stderr));
     let text = String::from_utf8(printed.stdout).unwrap();
     assert!(text.contains("peak acceleration     3 m/s^2"), "{text}");
+    assert!(text.contains("m/s^2, as the file names none; --unit gives another"), "{text}");
+    let part = |arguments: &[&str]| String::from_utf8(record(&folder, arguments).stdout).unwrap();
+    let past = part(&["a.csv", "--from", "0.5 s", "--to", "9 s", "--unit", "gal"]);
+    assert!(
+        past.contains("part used             500 ms to 2 s, where the record ends") && !past.contains("--unit"),
+        "{past}"
+    );
+    let between = part(&["a.csv", "--from", "0.7 s"]);
+    assert!(between.contains("1 s to 2 s: the values between these times, as none is interpolated"), "{between}");
     for file in ["record.json", "record.csv", "record.html", "figures/records.svg", "figures/spectra.svg"] {
         assert!(folder.join("held").join(file).is_file(), "{file}");
     }
@@ -99,17 +108,23 @@ fn what_is_refused_is_told_with_the_key_and_a_remedy() {
     let folder = folder("refused");
     std::fs::write(folder.join("a.csv"), TABLE).unwrap();
     std::fs::write(folder.join("values.csv"), "1\n2\n").unwrap();
+    std::fs::write(folder.join("three.csv"), "t [s],NS [gal],EW [gal]\n0,1,2\n0.1,2,3\n").unwrap();
+    std::fs::write(folder.join("plain.csv"), "time_s,acc_g\n0,1\n0.1,2\n").unwrap();
+    std::fs::write(folder.join("down.csv"), "1,1\n0.5,2\n0,1\n").unwrap();
     for (arguments, says) in [
         (&["none.at2"][..], &["none.at2", "can't be read"][..]),
         (&["."], &["is a folder"]),
-        (&["values.csv"], &["values.csv", "the step must be given", "add step"]),
+        (&["values.csv"], &["values.csv", "the step must be given", "add --step \"10 ms\""]),
         (&["a.csv", "--taper", "0.7"], &["taper = 0.7", "[0, 0.5]"]),
         (&["a.csv", "--baseline", "straight"], &["baseline = \"straight\"", "quintic"]),
         (&["a.csv", "--peak", "0.4"], &["peak = 0.4", "m/s^2"]),
         (&["a.csv", "--peak", "0.4 gn", "--scale", "2"], &["scale and peak both scale the record"]),
         (&["a.csv", "--arias", "-1 m/s"], &["arias"]),
-        (&["a.csv", "--spectral-acceleration", "1 gn"], &["of which natural period?", "add period"]),
+        (&["a.csv", "--spectral-acceleration", "1 gn"], &["of which natural period?", "add --period \"0.5 s\""]),
         (&["a.csv", "--period", "1 s"], &["no spectral_acceleration is given"]),
+        (&["three.csv"], &["ns (column 2), ew (column 3)", "such as --component \"NAME\""]),
+        (&["plain.csv"], &["is `g` in the heading `acc_g` a unit?", "--unit \"m/s^2\""]),
+        (&["down.csv"], &["the times descend, from 1 s to 0.5 s"]),
         (&["a.csv", "--from", "9 s"], &["fewer than two values", "0 s to 2 s"]),
     ] {
         let output = record(&folder, arguments);

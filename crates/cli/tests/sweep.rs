@@ -46,7 +46,7 @@ fn a_case_has_the_numbers_of_a_run_with_its_values() {
     done(&folder, &["sweep", "sweep.toml", "--out", "all"]);
     let rows = table(&folder.join("all/results.csv"));
     let header = "case,contact.feet.friction,block.rocker.tilt,block.rocker.height,largest,last,early,impacts,status,\
-        unsolved_steps,error";
+        unsolved_steps,warnings,error";
     assert_eq!(rows[0].join(","), header);
     assert_eq!(rows.len(), 1 + 2 * 3 * 2);
     let numbers: Vec<&str> = rows[1..].iter().map(|row| row[0].as_str()).collect();
@@ -76,7 +76,9 @@ fn a_case_has_the_numbers_of_a_run_with_its_values() {
         let summary: serde_json::Value =
             serde_json::from_slice(&std::fs::read(folder.join(&out).join("summary.json")).unwrap()).unwrap();
         assert_eq!(row[7], summary["impact_count"].to_string());
-        assert_eq!(row[8..], ["complete", "0", ""]);
+        let warned = summary["warnings"].as_array().unwrap();
+        let codes: Vec<&str> = warned.iter().map(|warning| warning["code"].as_str().unwrap()).collect();
+        assert_eq!(row[8..], ["complete", "0", &codes.join(" "), ""]);
     }
     let heights: Vec<f64> = rows[1..3].iter().map(|row| row[3].parse().unwrap()).collect();
     assert!(heights.iter().any(|h| *h < 0.135) && heights.iter().any(|h| *h > 0.135), "one in each half: {heights:?}");
@@ -108,6 +110,19 @@ fn shards_merge_to_the_bytes_of_one_run_on_any_number_of_threads() {
         let bytes = |name: &str| std::fs::read(folder.join(name).join(file)).unwrap();
         assert!(bytes("all").len() > 100 && bytes("merged") == bytes("all"), "{file}");
     }
+}
+
+#[test]
+fn cases_that_warn_are_counted_by_the_kinds_of_warnings() {
+    let sweep = "scene = \"rocking.toml\"\n[grid]\ntime.step = [\"100 us\", \"5 ms\", \"9 ms\"]\n";
+    let folder = study("warnings", sweep);
+    let told = done(&folder, &["sweep", "sweep.toml", "--out", "all"]);
+    // The column before the last, `error`.
+    let codes: Vec<String> =
+        table(&folder.join("all/results.csv")).iter().map(|row| row[row.len() - 2].clone()).collect();
+    assert_eq!((codes[0].as_str(), codes[1].as_str()), ("warnings", ""), "{codes:?}");
+    assert!(codes[2..].iter().all(|codes| codes.split(' ').any(|code| code == "scene")), "{codes:?}");
+    assert!(told.contains("warning: 2 of 3 cases warn: ") && told.contains("scene (2)"), "{told}");
 }
 
 #[test]
@@ -167,8 +182,8 @@ fn a_case_that_is_refused_is_a_row() {
     assert!(told.contains("1 case has no result"), "{told}");
     let rows = table(&folder.join("out/results.csv"));
     let last = rows[0].len();
-    assert_eq!(rows[1][last - 3..], ["complete", "0", ""]);
-    assert_eq!(rows[2][last - 3], "refused");
+    assert_eq!(rows[1][last - 4..], ["complete", "0", "", ""]);
+    assert_eq!(rows[2][last - 4], "refused");
     let line = std::fs::read_to_string(folder.join("out/results.csv")).unwrap();
     assert!(line.contains("block.rocker.tilt"), "with the reason: {line}");
 }
@@ -435,7 +450,7 @@ fn the_limit_of_overturning_is_that_of_the_formula() {
     assert!(told.contains("a bisection sees one limit of several"), "{told}");
     let rows = table(&folder.join("out/results.csv"));
     let header = "case,signal.shake.frequency,signal.shake.scale,find.beside,find.at_low,find.at_high,find.changes,find.runs,\
-        overturned_at,status,unsolved_steps,error";
+        overturned_at,status,unsolved_steps,warnings,error";
     assert_eq!(rows[0].join(","), header);
     for (row, limit) in rows[1..].iter().zip([1.2237, 1.4019]) {
         let cell = |k: usize| row[k].parse::<f64>().unwrap();

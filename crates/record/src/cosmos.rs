@@ -16,6 +16,7 @@ use crate::error::{RecordError, shown};
 use crate::format::Format;
 use crate::numbers;
 use crate::record::Record;
+use crate::units;
 use crate::{MOST_VALUES, STANDARD_GRAVITY};
 
 /// Codes of acceleration units in the format's table 2, with their value in m/s².
@@ -107,7 +108,7 @@ impl<'a> CosmosReader<'a> {
         let at = self.line;
         let reals = self.numbers("real")?;
         self.comments()?;
-        let (values, line) = self.values()?;
+        let (values, line, announced) = self.values()?;
         let integer = |k: usize| integers.get(k - 1).map(|value| *value as i64);
         let is_acceleration = integer(2) == Some(1);
         let mut block = CosmosBlock {
@@ -125,6 +126,16 @@ impl<'a> CosmosReader<'a> {
                 let known = "2 (g), 4 (cm/s^2), 7 (in/s^2), 10 (gal), 11 (mg)";
                 return Err(RecordError::Unit { line: at, found, quantity: "acceleration", known });
             };
+            if let Some((words, other)) = unit_in_words(announced)
+                && other != unit
+            {
+                let (code, words) = (integer(3).unwrap_or_default(), shown(words));
+                let reason = format!(
+                    "`units={words}` contradicts integer 3 of the header, which is {code} ({}): correct the one that is wrong",
+                    name_of_unit(code)
+                );
+                return Err(RecordError::Header { line, reason });
+            }
             let Some(step) = reals.get(61).copied() else {
                 return Err(RecordError::Missing { format: Format::Cosmos, what: "step (real 62)" });
             };
@@ -182,8 +193,8 @@ impl<'a> CosmosReader<'a> {
         Ok(())
     }
 
-    /// The values of a block, and the number of the line that announces them.
-    fn values(&mut self) -> Result<(Vec<f64>, usize), RecordError> {
+    /// The values of a block, with the number of the line that announces them and its text.
+    fn values(&mut self) -> Result<(Vec<f64>, usize, &'a str), RecordError> {
         let text = self.next("data line")?;
         let line = self.line;
         let count = self.count(text)?;
@@ -192,7 +203,7 @@ impl<'a> CosmosReader<'a> {
         if self.lines.next_if(|line| line.to_ascii_lowercase().contains("end-of-data")).is_some() {
             self.line += 1;
         }
-        Ok((values, line))
+        Ok((values, line, text))
     }
 
     /// The number at the beginning of a line.
@@ -237,6 +248,28 @@ impl<'a> CosmosReader<'a> {
             }
         }
         Ok(values)
+    }
+}
+
+/// The unit of an acceleration in a line such as `... units=cm/sec2(04),Format=(8F10.5)`, in m/s²;
+/// with its text; `None` if the line has none that is known.
+fn unit_in_words(line: &str) -> Option<(&str, f64)> {
+    const BEFORE: &str = "units=";
+    let start = line.to_ascii_lowercase().find(BEFORE)? + BEFORE.len();
+    let unit = line.get(start..)?.split(['(', ',']).next()?.trim();
+    let inches = matches!(unit.to_ascii_lowercase().as_str(), "in/sec2" | "in/sec/sec" | "in/s2");
+    let scale = if inches { Some(0.0254) } else { units::acceleration(0, unit).ok() };
+    Some((unit, scale?))
+}
+
+/// A code of [`ACCELERATION_UNITS`] in words.
+fn name_of_unit(code: i64) -> &'static str {
+    match code {
+        2 => "g",
+        4 => "cm/s^2",
+        7 => "in/s^2",
+        10 => "gal",
+        _ => "mg",
     }
 }
 
@@ -296,7 +329,11 @@ mod tests {
             assert_eq!(record.accelerations(), gal.map(|a| a * 0.01));
             assert_eq!((record.dt(), record.station(), record.description()), (0.01, "01-1 Code:XX-A Here", "line 2"));
         }
-        assert_eq!(read(&block(1, 2, DATA)).unwrap().accelerations()[3], 2.5 * 9.80665);
+        let in_g = DATA.replace("cm/sec2(04)", "g (02)");
+        assert_eq!(read(&block(1, 2, &in_g)).unwrap().accelerations()[3], 2.5 * 9.80665);
+        let message = read(&block(1, 2, DATA)).unwrap_err();
+        let expected = "line 36: `units=cm/sec2` contradicts integer 3 of the header, which is 2 (g): correct the one that is wrong";
+        assert_eq!(message, expected);
     }
 
     #[test]
@@ -306,7 +343,7 @@ mod tests {
         assert_eq!(read(&format!("{acceleration}\n{velocity}\n")).unwrap().len(), 5);
         let message = read(&format!("{acceleration}{acceleration}")).unwrap_err();
         assert!(message.contains("a second acceleration block (the first is in line 36)"), "{message}");
-        let other = block(1, 2, DATA);
+        let other = block(1, 2, &DATA.replace("cm/sec2(04)", "g (02)"));
         let component = |name| {
             let settings = crate::ReadSettings { component: Some(name), ..Default::default() };
             let read = Record::read_with(format!("{acceleration}{velocity}{other}"), "R", &settings);

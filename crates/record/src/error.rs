@@ -120,6 +120,49 @@ pub enum RecordError {
         /// What is expected.
         wanted: &'static str,
     },
+    /// Several accelerations of which none is chosen.
+    #[error("line {line}: {found} columns: which of them is the acceleration? The file has {known}")]
+    SeveralColumns {
+        /// The line.
+        line: usize,
+        /// Columns found.
+        found: usize,
+        /// The columns to choose from.
+        known: String,
+    },
+    /// Numbers that follow each other along the lines, as in a file that lost its header.
+    #[error(
+        "line {line}: this looks like the values of one record, {found} in each line, as in a PEER .AT2 file without its header, \
+         and not like a table with a row for each time"
+    )]
+    RowsOfValues {
+        /// The line.
+        line: usize,
+        /// Values in it.
+        found: usize,
+    },
+    /// A unit in a heading that may also be a part of the name.
+    #[error(
+        "line {line}: is `{unit}` in the heading `{heading}` a unit? A unit stands in brackets, such as `a [{unit}]`"
+    )]
+    UnitWithoutBrackets {
+        /// The line.
+        line: usize,
+        /// What may be the unit.
+        unit: String,
+        /// The heading.
+        heading: String,
+    },
+    /// Times that descend.
+    #[error("line {line}: the times descend, from {before} s to {time} s")]
+    Descending {
+        /// The line.
+        line: usize,
+        /// The time before, s.
+        before: f64,
+        /// The time there, s.
+        time: f64,
+    },
     /// Times without a uniform step.
     #[error(
         "line {line}: the time {time} s doesn't fit a uniform step: the other rows are {} s apart, which gives {} s; use uniform \

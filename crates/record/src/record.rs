@@ -21,6 +21,7 @@ pub struct Record {
     description: String,
     dt: f64,
     accelerations: Vec<f64>,
+    unit_assumed: bool,
 }
 
 /// What a file doesn't say itself. The default leaves everything to the file.
@@ -32,8 +33,8 @@ pub struct ReadSettings<'a> {
     /// The unit of a table's accelerations, m/s², where its heading has none; `None`: m/s².
     pub unit: Option<f64>,
     /// One of several accelerations: of a table by the heading of its column, without regard to
-    /// case, or by its number from 1; of a COSMOS file by its number from 1. If a step is given too,
-    /// a table has no times. `None`: the file has one only.
+    /// case, or by the number of the column from 1, that of the times included; of a COSMOS file by
+    /// its number from 1. If a step is given too, a table has no times, unless its heading says so. `None`: the file has one only.
     pub component: Option<&'a str>,
 }
 
@@ -57,7 +58,14 @@ impl Record {
         if let Some(&value) = accelerations.iter().find(|a| !(a.abs() <= LARGEST_ACCELERATION)) {
             return Err(RecordError::Value { line: 0, value });
         }
-        Ok(Self { name: name.to_owned(), station: String::new(), description: String::new(), dt, accelerations })
+        Ok(Self {
+            name: name.to_owned(),
+            station: String::new(),
+            description: String::new(),
+            dt,
+            accelerations,
+            unit_assumed: false,
+        })
     }
 
     /// Reads a file of any known [`Format`], recognised by its content; `name` is the record's name
@@ -121,6 +129,16 @@ impl Record {
         }
     }
 
+    pub(crate) fn assuming_its_unit(self) -> Self {
+        Self { unit_assumed: true, ..self }
+    }
+
+    /// Whether neither the file nor [`ReadSettings::unit`] gave a unit, so that m/s² was assumed.
+    #[must_use]
+    pub fn assumes_its_unit(&self) -> bool {
+        self.unit_assumed
+    }
+
     pub(crate) fn described(mut self, station: &str, description: &str) -> Self {
         (self.station, self.description) = (one_line(station), one_line(description));
         self
@@ -128,9 +146,10 @@ impl Record {
 
     /// The record with other accelerations.
     pub(crate) fn with(&self, accelerations: Vec<f64>) -> Result<Self, RecordError> {
-        let Self { name, station, description, dt, .. } = self;
+        let Self { name, station, description, dt, unit_assumed, .. } = self;
         let made = Self::new(name, *dt, accelerations)?;
-        Ok(Self { station: station.clone(), description: description.clone(), ..made })
+        let (station, description) = (station.clone(), description.clone());
+        Ok(Self { station, description, unit_assumed: *unit_assumed, ..made })
     }
 
     /// The record as a table: a heading with units, then time and acceleration. Reading it returns

@@ -31,9 +31,6 @@ const LARGEST_DEVIATION: f64 = 0.05;
 const EXPECTED_COLUMNS: &str =
     "a table has time and acceleration, or acceleration alone, with equally many columns in each row";
 
-const ONE_OF_SEVERAL: &str =
-    "a table has time and acceleration, or acceleration alone; of several accelerations a component must be chosen";
-
 const EQUAL_COLUMNS: &str = "the rows before have a different number";
 
 /// Whether a row begins with a number, so isn't a heading.
@@ -54,6 +51,8 @@ struct TableLayout {
     acceleration: usize,
     /// The units of time and acceleration, in s and m/s².
     scales: [f64; 2],
+    /// Whether that of the acceleration is known, by the heading or by what is given.
+    has_unit: bool,
 }
 
 pub(crate) fn read(text: &str, settings: &ReadSettings<'_>) -> Result<Record, RecordError> {
@@ -62,6 +61,7 @@ pub(crate) fn read(text: &str, settings: &ReadSettings<'_>) -> Result<Record, Re
     // With a step there may be one column.
     let decimal = settings.step.is_some() && settings.component.is_none() && has_decimal_commas(text);
     let mut layout: Option<TableLayout> = None;
+    let whole = text;
     for (index, text) in text.lines().enumerate() {
         let (line, text) = (index + 1, text.split('#').next().unwrap_or_default().trim());
         if text.is_empty() {
@@ -73,7 +73,7 @@ pub(crate) fn read(text: &str, settings: &ReadSettings<'_>) -> Result<Record, Re
         }
         let layout = match layout {
             Some(layout) => layout,
-            None => *layout.insert(layout_of(line, text, decimal, heading, settings)?),
+            None => *layout.insert(layout_of(line, text, whole, decimal, heading, settings)?),
         };
         rows.take(line, &cells(text, layout.separator), &layout)?;
     }
@@ -92,13 +92,38 @@ pub(crate) fn read(text: &str, settings: &ReadSettings<'_>) -> Result<Record, Re
             step
         }
     };
-    Record::new("", step, rows.accelerations)
+    let record = Record::new("", step, rows.accelerations)?;
+    Ok(if layout.has_unit { record } else { record.assuming_its_unit() })
 }
 
-/// The layout of the rows, from the first of them and the heading.
+/// Whether the numbers of a table without a heading follow each other along the lines: the last of a
+/// line is nearer to the first of the next than that is to the first before it, by far and on
+/// average. Columns of a table don't do this, whether the first has times or not.
+fn follows_along_lines(text: &str, separator: Separator) -> bool {
+    /// Along the lines values are one step apart, along a column at least three.
+    const NEARER: f64 = 0.5;
+    let rows =
+        text.lines().map(|text| text.split('#').next().unwrap_or_default().trim()).filter(|text| !text.is_empty());
+    let (mut along, mut below) = (0.0, 0.0);
+    let mut before: Option<[f64; 2]> = None;
+    for row in rows {
+        let cells = cells(row, separator);
+        let ends = [cells.first(), cells.last()].map(|cell| cell.and_then(|cell| numbers::one(cell)));
+        let [Some(first), Some(last)] = ends else { return false };
+        if let Some([first_before, last_before]) = before {
+            along += f64::abs(first - last_before);
+            below += f64::abs(first - first_before);
+        }
+        before = Some([first, last]);
+    }
+    along < NEARER * below
+}
+
+/// The layout of the rows, from the first of them, the whole file and the heading.
 fn layout_of(
     line: usize,
     row: &str,
+    whole: &str,
     decimal: bool,
     heading: Option<(usize, &str)>,
     settings: &ReadSettings<'_>,
@@ -109,6 +134,9 @@ fn layout_of(
         _ => Separator::Blanks,
     };
     let columns = cells(row, separator).len();
+    if heading.is_none() && columns > 2 && follows_along_lines(whole, separator) {
+        return Err(RecordError::RowsOfValues { line, found: columns });
+    }
     let names = match heading {
         None => Vec::new(),
         Some((line, heading)) => {
@@ -121,17 +149,26 @@ fn layout_of(
         }
     };
     // Without a component there are one or two columns; with one, a step says that there is no time.
-    let timed = columns > 1 && (settings.component.is_none() || settings.step.is_none());
+    let is_time = |name: &String| matches!(title(name).as_str(), "t" | "time");
+    let named = names.first().is_some_and(is_time);
+    let timed = columns > 1 && (settings.component.is_none() || settings.step.is_none() || named);
     let first = usize::from(timed);
     let acceleration = match settings.component {
         None if columns <= 2 => first,
-        None => return Err(RecordError::Columns { line, found: columns, wanted: ONE_OF_SEVERAL }),
+        None => {
+            return Err(RecordError::SeveralColumns {
+                line,
+                found: columns,
+                known: known_columns(first..columns, &names),
+            });
+        }
         Some(component) => column_of(component, first..columns, &names)?,
     };
     let mut scales = [1.0, settings.unit.unwrap_or(1.0)];
     let Some((line, _)) = heading else {
-        return Ok(TableLayout { separator, columns, timed, acceleration, scales });
+        return Ok(TableLayout { separator, columns, timed, acceleration, scales, has_unit: settings.unit.is_some() });
     };
+    let mut has_unit = settings.unit.is_some();
     for (k, name) in names.iter().enumerate() {
         let is_time = timed && k == 0;
         if !is_time && k != acceleration {
@@ -150,28 +187,49 @@ fn layout_of(
             Some(unit) if is_time => scales[0] = units::time(line, unit)?,
             Some(unit) => {
                 scales[1] = units::acceleration(line, unit)?;
+                has_unit = true;
                 if settings.unit.is_some() {
                     return Err(RecordError::UnitTwice { line, unit: shown(unit) });
                 }
             }
-            None => {}
+            None => {
+                // Whoever gives the unit has answered the question.
+                let settled = !is_time && settings.unit.is_some();
+                if let Some(unit) = unit_without_brackets(line, plain, is_time).filter(|_| !settled) {
+                    let (unit, heading) = (shown(unit), shown(plain));
+                    return Err(RecordError::UnitWithoutBrackets { line, unit, heading });
+                }
+            }
         }
     }
-    Ok(TableLayout { separator, columns, timed, acceleration, scales })
+    Ok(TableLayout { separator, columns, timed, acceleration, scales, has_unit })
 }
 
-/// The column with a component: by its heading, or by its number among the accelerations.
+/// The last word of a heading, if it is a unit that would change the numbers. It may also be a part
+/// of the name: `a_g` is the acceleration of the ground.
+fn unit_without_brackets(line: usize, name: &str, is_time: bool) -> Option<&str> {
+    let (_, last) = name.rsplit_once(|c: char| c == '_' || c.is_whitespace())?;
+    let scale = if is_time { units::time(line, last) } else { units::acceleration(line, last) };
+    scale.is_ok_and(|scale| scale != 1.0).then_some(last)
+}
+
+/// The columns of several accelerations, for messages.
+fn known_columns(columns: std::ops::Range<usize>, names: &[String]) -> String {
+    let named = |k: usize| match names.get(k).map(|name| shown(&title(name))).filter(|name| !name.is_empty()) {
+        Some(name) => format!("{name} (column {})", k + 1),
+        None => format!("column {}", k + 1),
+    };
+    columns.map(named).collect::<Vec<_>>().join(", ")
+}
+
+/// The column with a component: by its heading, or by its number.
 fn column_of(component: &str, columns: std::ops::Range<usize>, names: &[String]) -> Result<usize, RecordError> {
     let wanted = component.trim().to_lowercase();
     let by_name = columns.clone().find(|k| names.get(*k).is_some_and(|name| title(name) == wanted));
-    let by_number = wanted.parse::<usize>().ok().and_then(|k| columns.clone().nth(k.checked_sub(1)?));
-    by_name.or(by_number).ok_or_else(|| {
-        let known: Vec<String> = match names.get(columns.clone()) {
-            Some(names) if !names.is_empty() => names.iter().map(|name| shown(&title(name))).collect(),
-            _ => (1..=columns.len()).map(|k| k.to_string()).collect(),
-        };
-        RecordError::Component { component: shown(component), known: known.join(", ") }
-    })
+    let by_number = wanted.parse::<usize>().ok().and_then(|k| k.checked_sub(1)).filter(|k| columns.contains(k));
+    by_name
+        .or(by_number)
+        .ok_or_else(|| RecordError::Component { component: shown(component), known: known_columns(columns, names) })
 }
 
 /// The text of a heading without quotes.
@@ -257,6 +315,9 @@ impl TableRows {
     /// The step of the times: the first step or the rounded mean if all rows fit it exactly, else
     /// the mean.
     fn step(&self) -> Result<f64, RecordError> {
+        if let (true, [first, second, ..]) = (self.times.windows(2).all(|t| t[1] < t[0]), self.times.as_slice()) {
+            return Err(RecordError::Descending { line: self.lines[1], before: *first, time: *second });
+        }
         let (first, count) = (self.times[0], (self.times.len() - 1) as f64);
         let mean = (self.times[self.times.len() - 1] - first) / count;
         let round = format!("{mean:.9e}").parse().unwrap_or(mean);
@@ -343,13 +404,19 @@ mod tests {
             Record::read_with(table, "R", &settings).map_err(|error| error.to_string())
         };
         assert_eq!(read("ns", None, None).unwrap().accelerations(), [1.0, -2.0, 3.0]);
-        assert_eq!(read("2", None, None), read("NS", None, None));
+        assert_eq!(read("3", None, None), read("NS", None, None));
         assert_eq!(read("UD", Some(0.01), None).unwrap().accelerations(), [0.07, 0.08, 0.09]);
         assert_eq!(
             read("EW", Some(0.01), None).unwrap_err(),
             "line 1: the unit is `g` by the heading: omit the given one"
         );
-        assert_eq!(read("4", None, None).unwrap_err(), "there is no component `4`: the file has ew, ns, ud");
+        assert_eq!(
+            read("5", None, None).unwrap_err(),
+            "there is no component `5`: the file has ew (column 2), ns (column 3), ud (column 4)"
+        );
+        assert!(read("1", None, None).is_err(), "the first column has the times");
+        let twice = read("NS", None, Some(0.1)).unwrap_err();
+        assert!(twice.contains("has its own step, 0.5 s"), "the heading says so: {twice}");
         // With a step all columns are accelerations.
         let plain = "1 2\n3 4\n";
         let settings = ReadSettings { component: Some("2"), unit: None, step: Some(0.1) };
@@ -357,10 +424,37 @@ mod tests {
         assert_eq!((record.dt(), record.accelerations()), (0.1, &[2.0, 4.0][..]));
         let settings = ReadSettings { component: Some("3"), ..settings };
         let error = Record::read_with(plain, "R", &settings).unwrap_err().to_string();
-        assert_eq!(error, "there is no component `3`: the file has 1, 2");
+        assert_eq!(error, "there is no component `3`: the file has column 1, column 2");
         let error =
-            Record::read_with("0 1 2\n1 2\n", "R", &ReadSettings { component: Some("1"), ..Default::default() });
+            Record::read_with("0 1 2\n1 2\n", "R", &ReadSettings { component: Some("2"), ..Default::default() });
         assert_eq!(error.unwrap_err().to_string(), "line 2: 2 columns, but the rows before have a different number");
+    }
+
+    #[test]
+    fn values_that_fill_lines_are_not_columns() {
+        let value = |k: u32| (f64::from(k) / 20.0).sin();
+        let line = |row: u32| (0..5).map(|k| format!(" {:.6E}", value(5 * row + k))).collect::<String>();
+        let text: String = (0..40).map(|row| line(row) + "\n").collect();
+        let settings = [ReadSettings::default(), ReadSettings { component: Some("1"), step: Some(0.05), unit: None }];
+        for settings in settings {
+            let error = Record::read_with(&text, "R", &settings).unwrap_err().to_string();
+            assert!(error.starts_with("line 1: this looks like the values of one record, 5 in each line"), "{error}");
+        }
+        // Three accelerations without times are columns.
+        let row = |k: u32| format!("{:.6} {:.6} {:.6}\n", value(k), 2.0 * value(k + 9), -value(k + 30));
+        let text: String = (0..200).map(row).collect();
+        let settings = ReadSettings { component: Some("2"), step: Some(0.05), unit: None };
+        let record = Record::read_with(&text, "R", &settings).unwrap();
+        assert!((record.accelerations()[1] - 2.0 * value(10)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_unit_that_nobody_gave_is_remembered_as_assumed() {
+        let assumes = |text: &str, unit| {
+            Record::read_with(text, "R", &ReadSettings { unit, ..Default::default() }).unwrap().assumes_its_unit()
+        };
+        assert!(assumes("0,1\n1,2\n", None) && assumes("t,a\n0,1\n1,2\n", None));
+        assert!(!assumes("t,a [g]\n0,1\n1,2\n", None) && !assumes("t,acc_g\n0,1\n1,2\n", Some(9.8)));
     }
 
     #[test]
@@ -385,7 +479,7 @@ mod tests {
                 .unwrap_err()
                 .starts_with("line 3: the time 0.1 s doesn't fit a uniform step")
         );
-        assert!(read("1,1\n0.9,1\n0.8,1\n").unwrap_err().contains("doesn't fit a uniform step"));
+        assert_eq!(read("1,1\n0.9,1\n0.8,1\n").unwrap_err(), "line 2: the times descend, from 1 s to 0.9 s");
         assert!(read("0,1\n0,1\n").unwrap_err().starts_with("line 2: the time 0 s doesn't fit a uniform step"));
     }
 
@@ -400,7 +494,18 @@ mod tests {
             message("t,a\n0,1\n1\n"),
             "line 3: 1 column, but a table has time and acceleration, or acceleration alone, with equally many columns in each row"
         );
-        assert!(message("0,1,2\n1,2,3\n").starts_with("line 1: 3 columns, but a table has"));
+        assert_eq!(
+            message("t,NS,EW\n0,1,2\n1,2,3\n"),
+            "line 2: 3 columns: which of them is the acceleration? The file has ns (column 2), ew (column 3)"
+        );
+        assert!(message("0 7 2\n1 8 3\n").ends_with("The file has column 2, column 3"));
+        for (text, unit) in [
+            ("time_s,acc_g\n0,1\n1,2\n", "g"),
+            ("t,acceleration cm/s2\n0,1\n1,2\n", "cm/s2"),
+            ("t_ms,a\n0,1\n1,2\n", "ms"),
+        ] {
+            assert!(message(text).starts_with(&format!("line 1: is `{unit}` in the heading")), "{}", message(text));
+        }
         assert_eq!(message("t,a\n0,1\n1,high\n"), "line 3: `high` is not a number");
         assert_eq!(message("a,t\n1,0\n1,1\n"), "line 1: heading `t`: time must come first, then acceleration");
         assert_eq!(

@@ -158,6 +158,24 @@ impl ParsedScene {
         shared.with_document(sets, make, scene)?.map_err(|found| in_order(found, sets))
     }
 
+    /// As [`Self::scene`], with the warnings that [`Self::load`] finds.
+    ///
+    /// # Errors
+    /// As [`load_with`].
+    pub fn scene_with_warnings(
+        &self,
+        stem: &str,
+        sets: &[(String, String)],
+        shared: &resolve::SharedParts,
+        read: &mut resolve::ReadFile<'_>,
+    ) -> Result<(scene::Scene, Vec<diagnostic::Diagnostic>), diagnostic::Diagnostics> {
+        let read = std::cell::RefCell::new(read);
+        let make = || self.document(sets, &mut |path| (*read.borrow_mut())(path));
+        let scene =
+            |document: &_| resolve::scene_with_warnings(document, stem, shared, &mut |path| (*read.borrow_mut())(path));
+        shared.with_document(sets, make, scene)?.map_err(|found| in_order(found, sets))
+    }
+
     /// The document with these settings; otherwise everything that is wrong with the scene.
     fn document(
         &self,

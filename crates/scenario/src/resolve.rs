@@ -116,19 +116,42 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
     Err(diagnostics)
 }
 
-/// The scene of a document alone, as [`resolve`] finds it: without warnings and notes, which a study doesn't show and which take
-/// longer than the scene itself, and without what only a written document needs. `shared` has records of the same files.
+/// The scene of a document alone, as [`resolve`] finds it: without what only a written document needs, and without warnings,
+/// which take longer than the scene itself. `shared` has records of the same files.
 pub(crate) fn scene(
     document: &Document,
     stem: &str,
     shared: &SharedParts,
     read: &mut ReadFile<'_>,
 ) -> Result<Scene, Diagnostics> {
+    scene_of(document, stem, shared, read).map(|(scene, _)| scene)
+}
+
+/// As [`scene`], with its warnings.
+pub(crate) fn scene_with_warnings(
+    document: &Document,
+    stem: &str,
+    shared: &SharedParts,
+    read: &mut ReadFile<'_>,
+) -> Result<(Scene, Vec<Diagnostic>), Diagnostics> {
+    scene_of(document, stem, shared, read).map(|(scene, mut warnings)| {
+        warnings.extend(scene_checks::check(&scene, document).warnings);
+        (scene, warnings)
+    })
+}
+
+/// The scene, and the warnings that come with its making.
+fn scene_of(
+    document: &Document,
+    stem: &str,
+    shared: &SharedParts,
+    read: &mut ReadFile<'_>,
+) -> Result<(Scene, Vec<Diagnostic>), Diagnostics> {
     let mut resolver = Resolver::new(document, false, Some(shared), read);
     let scene = resolver.scene(stem);
     resolver.report_unheld(scene.as_ref());
     match scene {
-        Some(scene) if resolver.errors.is_empty() => Ok(scene),
+        Some(scene) if resolver.errors.is_empty() => Ok((scene, resolver.warnings)),
         _ => {
             let mut diagnostics = Diagnostics(resolver.errors);
             diagnostics.sort();

@@ -103,9 +103,9 @@ const TURN_ACCELERATION: Key = key(
 #[rustfmt::skip] // a row per key
 const RECORD: &[Key] = &[
     key("record", Kind::Path, Required, "\"quake.at2\"", "File of the record: PEER .AT2, ESM or COSMOS ASCII, or a table of time and acceleration, or of accelerations alone; told apart by its content. Relative to the scene's file."),
-    key("component", Kind::Text, Optional, "\"EW\"", "One of several accelerations: of a table by the heading of its column or by its number from 1, of a COSMOS file by its number."),
+    key("component", Kind::Text, Optional, "\"EW\"", "One of several accelerations: of a table by the heading of its column or by the number of the column from 1, that of the times included; of a COSMOS file by its number."),
     key("unit", Kind::Choice(words::RecordUnit::WORDS), Optional, "\"gn\"", "Unit of the accelerations of a table whose heading has none; m/s^2 if left out."),
-    key("step", TIME, Optional, "\"10 ms\"", "Time between two values of a table of accelerations without times; with component no column is then a time."),
+    key("step", TIME, Optional, "\"10 ms\"", "Time between two values of a table of accelerations without times; with component no column is then a time, unless the heading of the first says so."),
     key("from", Kind::Quantity(Dimension::TIME, Range::NOT_NEGATIVE), Optional, "\"5 s\"", "Start of the part that is used, in the time of the record; the run starts there. The record's start if left out."),
     key("to", Kind::Quantity(Dimension::TIME, Range::NOT_NEGATIVE), Optional, "\"25 s\"", "Its end; the record's end if left out."),
     key("baseline", Kind::Choice(words::Baseline::WORDS), Default("\"none\""), "\"linear\"", "Least-squares polynomial that is subtracted from the acceleration, after the cut by from and to."),

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use teeter_report::SharedStances;
 use teeter_scenario::ParsedScene;
-use teeter_scenario::diagnostic::Diagnostics;
+use teeter_scenario::diagnostic::{Diagnostic, Diagnostics};
 use teeter_scenario::resolve::{ReadFile, Resolved, SharedCounts, SharedParts};
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::{BuildError, Simulation};
@@ -106,6 +106,15 @@ impl StudyScene {
     /// All errors of the scene with it.
     pub fn scene(&self, setting: &Setting) -> Result<Scene, Diagnostics> {
         self.parsed()?.scene(&self.stem, &self.sets_of(setting), &self.shared, &mut |path| self.file(path))
+    }
+
+    /// As [`Self::scene`], with the warnings about the scene before its run.
+    ///
+    /// # Errors
+    /// All errors of the scene with it.
+    pub fn scene_with_warnings(&self, setting: &Setting) -> Result<(Scene, Vec<Diagnostic>), Diagnostics> {
+        let (sets, read) = (self.sets_of(setting), &mut |path: &str| self.file(path));
+        self.parsed()?.scene_with_warnings(&self.stem, &sets, &self.shared, read)
     }
 
     /// The simulation of a scene with some setting, with what of it such scenes share.

@@ -49,7 +49,7 @@ impl Dimension {
     pub const ANGULAR_VELOCITY: Self = Self::new(0, 0, -1, 1, 0);
     /// Angular acceleration, rad/s².
     pub const ANGULAR_ACCELERATION: Self = Self::new(0, 0, -2, 1, 0);
-    /// Rate or frequency, 1/s. A hertz is 1/s here; it is not multiplied by 2π.
+    /// Rate or frequency, 1/s. A hertz is 1/s here; it is not multiplied by 2π, so rad/s is refused.
     pub const RATE: Self = Self::new(0, 0, -1, 0, 0);
     /// Density, kg/m³.
     pub const DENSITY: Self = Self::new(1, -3, 0, 0, 0);
@@ -81,20 +81,22 @@ impl Dimension {
     pub const DAMPING: Self = Self::new(1, 0, -1, 0, 0);
 
     /// Whether a quantity of dimension `got` is accepted where `self` is expected. An angle needs
-    /// the radian; elsewhere the radian counts as dimensionless (1/s accepts rad/s, N m accepts N
-    /// m/rad).
+    /// the radian; elsewhere the radian counts as dimensionless (N m accepts N m/rad), except in
+    /// frequencies: read as cycles, 1 rad/s would be 2π times too high.
     ///
     /// ```
     /// use teeter_text::dimension::Dimension;
-    /// assert!(Dimension::RATE.accepts(Dimension::ANGULAR_VELOCITY));
+    /// assert!(Dimension::ENERGY.accepts(Dimension::new(1, 2, -2, -1, 0)));
+    /// assert!(!Dimension::RATE.accepts(Dimension::ANGULAR_VELOCITY));
     /// assert!(!Dimension::ANGULAR_VELOCITY.accepts(Dimension::RATE));
     /// ```
     pub const fn accepts(self, got: Self) -> bool {
+        let is_rate = self.kg == 0 && self.m == 0 && self.s == -1 && self.rad == 0 && self.kelvin == 0;
         self.kg == got.kg
             && self.m == got.m
             && self.s == got.s
             && self.kelvin == got.kelvin
-            && (self.rad == 0 || self.rad == got.rad)
+            && ((self.rad == 0 && !is_rate) || self.rad == got.rad)
     }
 
     /// Its common name with the article: "a length", or "a quantity" if it has none.

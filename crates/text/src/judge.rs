@@ -425,7 +425,7 @@ impl Judge<'_> {
             }
             Raw::Float(_) | Raw::Integer(_) => {
                 let rule = format!("{} needs its unit, got a bare number", dimension.name());
-                self.blame(node, path, rule).remedy = Some(with_unit(&node.written, dimension));
+                self.blame(node, path, rule).remedy = Some(with_unit(&node.written, dimension, range));
                 return None;
             }
             other => {
@@ -439,7 +439,7 @@ impl Judge<'_> {
             Ok(value) => self.within(range, value, dimension, key, path, node),
             Err(error) => {
                 let remedy = match &error {
-                    QuantityError::MissingUnit => Some(with_unit(text.trim(), dimension)),
+                    QuantityError::MissingUnit => Some(with_unit(text.trim(), dimension, range)),
                     _ => error.remedy(),
                 };
                 let rule = match &error {

@@ -11,6 +11,7 @@
 
 use crate::diagnostic::printable;
 use crate::dimension::Dimension;
+use crate::readable::shortest;
 use crate::{unit_expression, units};
 
 /// Why a text is not a quantity, or not of the expected dimension.
@@ -60,6 +61,14 @@ pub enum QuantityError {
         /// The unit as written.
         unit: String,
     },
+    /// An angular velocity where cycles per second are expected.
+    #[error("a frequency in cycles per second (Hz) is expected, got an angular velocity ({unit})")]
+    AngularFrequency {
+        /// The unit as written.
+        unit: String,
+        /// The same frequency, Hz.
+        hertz: f64,
+    },
     /// Larger than the largest double.
     #[error("too large to compute with (the limit is 1.8e308 in SI units)")]
     TooLarge,
@@ -80,6 +89,10 @@ impl QuantityError {
     pub fn remedy(&self) -> Option<String> {
         match self {
             Self::DecimalComma { corrected, .. } => Some(format!("use a decimal point: \"{corrected}\"")),
+            Self::AngularFrequency { hertz, .. } => {
+                let hertz = shortest(*hertz, 6);
+                Some(format!("1 Hz is 2π rad/s: write \"{hertz} Hz\" if the angular velocity is meant"))
+            }
             Self::UnknownUnit { .. } => Some(format!("known units are {}", units::known())),
             Self::Syntax { .. } => {
                 Some("a unit is a product or quotient of powers, such as N s/m^2 or kg/m^3".to_owned())
@@ -89,6 +102,16 @@ impl QuantityError {
             }
             _ => None,
         }
+    }
+
+    /// Suggests only a unit that gives the text the expected dimension.
+    fn suggesting(self, text: &str, wanted: Dimension) -> Self {
+        let Self::UnknownUnit { symbol, .. } = self else { return self };
+        let fits = |unit: &str| {
+            Quantity::read(&text.replacen(&symbol, unit, 1)).is_ok_and(|read| wanted.accepts(read.dimension))
+        };
+        let suggestion = units::suggest(&symbol, fits);
+        Self::UnknownUnit { symbol, suggestion }
     }
 
     /// The unit that was probably meant.
@@ -113,7 +136,17 @@ impl QuantityError {
 /// # Errors
 /// A [`QuantityError`] that says what is wrong with the text.
 pub fn parse(text: &str, wanted: Dimension) -> Result<f64, QuantityError> {
-    let quantity = Quantity::read(text)?;
+    let quantity = Quantity::read(text).map_err(|error| error.suggesting(text, wanted))?;
+    if wanted == Dimension::RATE && quantity.dimension == Dimension::ANGULAR_VELOCITY {
+        // Revolutions per minute are cycles, radians aren't.
+        return match text.trim().strip_suffix("rpm") {
+            Some(number) if quantity.unit == "rpm" => parse(&format!("{number} 1/min"), wanted),
+            _ => {
+                let (unit, hertz) = (printable(quantity.unit), quantity.value / std::f64::consts::TAU);
+                Err(QuantityError::AngularFrequency { unit, hertz })
+            }
+        };
+    }
     if !wanted.accepts(quantity.dimension) {
         return Err(if quantity.unit.is_empty() {
             QuantityError::MissingUnit
@@ -332,7 +365,8 @@ mod tests {
             ("0.5 1/s", Dimension::RATE, 0.5),
             ("0.5/s", Dimension::RATE, 0.5),
             ("50 Hz", Dimension::RATE, 50.0),
-            ("2 rad/s", Dimension::RATE, 2.0),
+            ("60 rpm", Dimension::RATE, 1.0),
+            ("90 rpm", Dimension::RATE, 1.5),
             ("2 rad/s", Dimension::ANGULAR_VELOCITY, 2.0),
             ("5 deg", Dimension::ANGLE, 0.087_266_462_599_716_47),
             ("5°", Dimension::ANGLE, 0.087_266_462_599_716_47),
@@ -388,8 +422,23 @@ mod tests {
         assert!(matches!(parse(&nested, Dimension::LENGTH), Err(QuantityError::Syntax { .. })));
         let powers = "1 (((m^99)^99)^99)^99 (((m^99)^99)^99)^99";
         assert!(parse(powers, Dimension::LENGTH).is_err());
+        let angular = parse("7 rad/s", Dimension::RATE).unwrap_err();
+        let expected = "a frequency in cycles per second (Hz) is expected, got an angular velocity (rad/s)";
+        assert_eq!(angular.to_string(), expected);
+        assert!(angular.remedy().is_some_and(|remedy| remedy.contains("\"1.11408 Hz\"")), "{angular:?}");
         let comma = parse("1,5 mm", Dimension::LENGTH).unwrap_err();
         assert_eq!(comma.remedy().as_deref(), Some("use a decimal point: \"1.5 mm\""));
+    }
+
+    #[test]
+    fn a_suggested_unit_has_the_expected_dimension() {
+        let suggested = |text: &str, wanted| parse(text, wanted).unwrap_err().did_you_mean().map(str::to_owned);
+        assert_eq!(suggested("4 dg", Dimension::ANGLE).as_deref(), Some("deg"));
+        assert_eq!(suggested("36 in", Dimension::LENGTH), None);
+        assert_eq!(suggested("69 Gpa", Dimension::PRESSURE).as_deref(), Some("GPa"));
+        assert_eq!(suggested("3 newton/m", Dimension::STIFFNESS).as_deref(), Some("N"));
+        assert_eq!(suggested("3 newton/m", Dimension::LENGTH), None);
+        assert_eq!(parse("69 GN/m^2", Dimension::PRESSURE), Ok(69e9));
     }
 
     #[test]

@@ -129,7 +129,7 @@ impl Reader<'_> {
             }
             let unit = units::find(symbol).ok_or_else(|| QuantityError::UnknownUnit {
                 symbol: printable(symbol),
-                suggestion: units::suggest(symbol),
+                suggestion: units::suggest(symbol, |_| true),
             })?;
             self.rest = rest;
             let Dimension { kg, m, s, rad, kelvin } = unit.dimension;

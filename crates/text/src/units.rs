@@ -57,6 +57,7 @@ pub static UNITS: &[Unit] = &[
     ten("mN", Dimension::FORCE, -3),
     ten("kN", Dimension::FORCE, 3),
     ten("MN", Dimension::FORCE, 6),
+    ten("GN", Dimension::FORCE, 9),
     ten("Pa", Dimension::PRESSURE, 0),
     ten("hPa", Dimension::PRESSURE, 2),
     ten("kPa", Dimension::PRESSURE, 3),
@@ -120,28 +121,31 @@ pub fn find(symbol: &str) -> Option<&'static Unit> {
 const LONGEST: usize = 32;
 
 /// What was probably meant by an unknown symbol: a unit in words, two units run together, or a
-/// typing error.
-pub(crate) fn suggest(symbol: &str) -> Option<String> {
+/// typing error; of the units that `fits` accepts.
+pub(crate) fn suggest(symbol: &str, fits: impl Fn(&str) -> bool) -> Option<String> {
     if symbol.len() > LONGEST {
         return None;
     }
     let lower = symbol.to_lowercase();
     let singular = lower.strip_suffix('s').unwrap_or(&lower);
-    if let Some((_, unit)) = WORDS.iter().find(|(word, _)| *word == lower || *word == singular) {
+    let in_words = WORDS.iter().find(|(word, unit)| (*word == lower || *word == singular) && fits(unit));
+    if let Some((_, unit)) = in_words {
         return Some((*unit).to_owned());
     }
     if symbol.len() <= 8 {
         for (at, _) in symbol.char_indices().skip(1) {
             let (first, second) = symbol.split_at(at);
-            if find(first).is_some() && find(second).is_some() {
-                return Some(format!("{first} {second}"));
+            let both = format!("{first} {second}");
+            if find(first).is_some() && find(second).is_some() && fits(&both) {
+                return Some(both);
             }
         }
     }
-    if let Some(unit) = UNITS.iter().find(|unit| unit.symbol.to_lowercase() == lower) {
-        return Some(unit.symbol.to_owned());
+    let fitting = || UNITS.iter().map(|unit| unit.symbol).filter(|symbol| fits(symbol));
+    if let Some(unit) = fitting().find(|symbol| symbol.to_lowercase() == lower) {
+        return Some(unit.to_owned());
     }
-    suggest::nearest(symbol, UNITS.iter().map(|unit| unit.symbol)).map(str::to_owned)
+    suggest::nearest(symbol, fitting()).map(str::to_owned)
 }
 
 /// The symbols, for a message.
@@ -164,6 +168,7 @@ mod tests {
 
     #[test]
     fn words_run_together_units_and_wrong_capitals_are_understood() {
+        let suggest = |symbol: &str| suggest(symbol, |_| true);
         assert_eq!(suggest("seconds").as_deref(), Some("s"));
         assert_eq!(suggest("Nm").as_deref(), Some("N m"));
         assert_eq!(suggest("Gpa").as_deref(), Some("GPa"));

@@ -2,15 +2,28 @@
 
 use crate::diagnostic::printable;
 use crate::dimension::Dimension;
-use crate::keys::{Key, Kind};
+use crate::keys::{Key, Kind, Range};
+use crate::quantity;
 
-/// How to add the unit to a bare number.
-pub(crate) fn with_unit(number: &str, dimension: Dimension) -> String {
+/// How to add the unit to a bare number: one that takes it into the range, if one does.
+pub(crate) fn with_unit(number: &str, dimension: Dimension, range: &Range) -> String {
     let number = printable(number);
-    let unit = dimension.unit();
-    match dimension.usual_units() {
-        [] | [_] => format!("write \"{number} {unit}\""),
-        [_, others @ ..] => format!("write \"{number} {unit}\" if it is in {unit}; also known: {}", others.join(", ")),
+    let mut units: Vec<String> = dimension.usual_units().iter().map(|unit| (*unit).to_owned()).collect();
+    if units.is_empty() {
+        units.push(dimension.unit());
+    }
+    let fits = |unit: &String| {
+        let value = quantity::parse(&format!("{number} {unit}"), dimension);
+        value.is_ok_and(|value| range.check(value, dimension).is_none())
+    };
+    if units.iter().any(fits) {
+        units.retain(fits);
+    }
+    match units.as_slice() {
+        [unit, others @ ..] if !others.is_empty() => {
+            format!("write \"{number} {unit}\" if it is in {unit}; also known: {}", others.join(", "))
+        }
+        only => format!("write \"{number} {}\"", only.concat()),
     }
 }
 

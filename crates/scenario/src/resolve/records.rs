@@ -184,8 +184,18 @@ fn remedy(error: &RecordError) -> &'static str {
         RecordError::StepTwice { .. } | RecordError::UnitTwice { .. } | RecordError::NotForFormat { .. } => {
             "leave this key out"
         }
-        RecordError::Component { .. } => "name one of these",
-        RecordError::Columns { .. } => "choose one of several accelerations by component = \"NAME\", or by its number",
+        RecordError::Component { .. } => "name one of these, or give the number of its column",
+        RecordError::SeveralColumns { .. } => {
+            "choose one, such as component = \"NAME\", by its heading or by the number of its column"
+        }
+        RecordError::RowsOfValues { .. } => {
+            "put its header back (a line with NPTS and DT), or write one value in each line and add step, such as step = \"10 ms\""
+        }
+        RecordError::UnitWithoutBrackets { .. } => {
+            "put it in brackets if it is one, or say which unit it is, such as unit = \"m/s^2\""
+        }
+        RecordError::Descending { .. } => "sort the rows by time",
+        RecordError::Columns { .. } => "give all rows of the table the same columns",
         RecordError::Cut { .. } => "give times within the record, from before to",
         RecordError::Still => "leave out this key, or use another record",
         RecordError::Parameter { .. } => "choose a value in that range",

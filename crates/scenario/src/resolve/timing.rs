@@ -29,9 +29,13 @@ const MAX_BYTES: f64 = 10e9;
 
 impl Resolver<'_, '_> {
     pub(super) fn time(&mut self, blocks: &[Option<BlockScene>], beams: &[Option<BeamScene>]) -> Option<Time> {
-        let (end, accuracy) = (self.quantity("time.end"), self.accuracy());
+        let end = self.quantity("time.end");
+        let errors = self.errors.len();
+        let accuracy = self.accuracy();
         let step = match (accuracy, end) {
             (Some(_), Some(end)) => Some(end / STEPS_TO_GO_ON),
+            // Without an accuracy that can be used there is no step either, which has been said.
+            _ if self.errors.len() > errors && !self.doc.has("time.step") => None,
             _ => self.quantity("time.step"),
         };
         let theta = self.number("time.theta");

@@ -165,7 +165,7 @@ fn errors_name_the_key_and_the_line_of_the_record() {
         "component = 'up'",
         "t,EW,NS\n0,1,2\n1,2,3\n",
         &key("component"),
-        &["no component `up`: the file has ew, ns"],
+        &["no component `up`: the file has ew (column 2), ns (column 3)"],
     );
     refused("from = '1.8 s'", TABLE, &key("from"), &["fewer than two values", "0 s to 2 s"]);
     refused("from = '1 s', to = '0.2 s'", TABLE, &key("to"), &["fewer than two values"]);

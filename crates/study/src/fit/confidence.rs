@@ -31,7 +31,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// The 95 % interval: by the standard error, and up to the values that fit as well.
+    /// The 95 % interval: by the standard error, but not narrower than the steps of the function allow, and up to the
+    /// values that fit as well.
     #[must_use]
     pub fn interval(&self) -> (f64, f64) {
         let [low, high] = self.interval;
@@ -60,6 +61,9 @@ const TRADES: f64 = 0.9;
 const CHI_SQUARED_95: f64 = NORMAL_95 * NORMAL_95;
 /// An interval by the standard error that is passed by less than this factor is confirmed by what is beside it.
 const CONFIRMED: f64 = 1.3;
+/// The least distance of differences, as a share of the range: within it the steps of the function aren't told from its
+/// slope, so no interval is narrower.
+const LEAST_REACH: f64 = 2e-4;
 /// Distance of the differences at first, as a share of the range.
 const REACH: f64 = 4e-3;
 
@@ -145,7 +149,7 @@ pub(super) fn of(
     // show the steps of the function, over a longer one its curvature.
     if let Some(first) = inverse_of(&columns, &known) {
         for &k in known.iter().filter(|&&k| k < keys.len()) {
-            let reach = (variance * first[k][k]).sqrt().clamp(2e-4, 5e-2);
+            let reach = (variance * first[k][k]).sqrt().clamp(LEAST_REACH, 5e-2);
             columns[k] = difference(k, reach)?;
         }
     }
@@ -208,7 +212,10 @@ pub(super) fn of(
             at_bound: k < keys.len() && (fitted.at[k] <= 1e-6 || fitted.at[k] >= 1.0 - 1e-6),
             share_of_range: (k < keys.len()).then(|| error(k)),
             interval: match keys.get(k) {
-                Some(key) => [-1.0, 1.0].map(|side| key.at(fitted.at[k] + side * NORMAL_95 * error(k))),
+                Some(key) => {
+                    let half = (NORMAL_95 * error(k)).max(LEAST_REACH);
+                    [-1.0, 1.0].map(|side| key.at(fitted.at[k] + side * half))
+                }
                 None => [-1.0, 1.0].map(|side| value + side * NORMAL_95 * error(k)),
             },
             bounds: keys.get(k).map(super::FitKey::bounds),

@@ -11,6 +11,8 @@ pub struct FitKey {
     high: f64,
     unit: WrittenNumber,
     logarithmic: bool,
+    /// As it was read.
+    typed: String,
 }
 
 /// From this ratio of the bounds on, a positive range is searched on a logarithmic scale.
@@ -56,13 +58,26 @@ impl FitKey {
             return Err(format!("the lower bound of {key} must be below the upper one"));
         }
         let logarithmic = low.value > 0.0 && high.value / low.value >= LOGARITHMIC_FROM;
-        Ok(Self { key: key.to_owned(), low: low.value, high: high.value, unit: high, logarithmic })
+        Ok(Self {
+            key: key.to_owned(),
+            low: low.value,
+            high: high.value,
+            unit: high,
+            logarithmic,
+            typed: text.trim().to_owned(),
+        })
     }
 
     /// The path of the key.
     #[must_use]
     pub fn key(&self) -> &str {
         &self.key
+    }
+
+    /// Key and range as they were read.
+    #[must_use]
+    pub fn typed(&self) -> &str {
+        &self.typed
     }
 
     /// The unit of its values, as written; empty for a pure number.

@@ -139,7 +139,9 @@ fn with_error(found: &Estimate) -> String {
             (false, false) => format!("{value}{unit} ({from} to {to}, 95 %)"),
         };
     }
-    let Some(decimals) = decimals_of(error) else { return format!("{}{unit}", short(value)) };
+    let Some(decimals) = decimals_of(error).and_then(|_| decimals_of(0.25 * (above + below))) else {
+        return format!("{}{unit}", short(value));
+    };
     format!("{value:.decimals$} ± {:.decimals$}{unit} (95 %)", 0.5 * (above + below))
 }
 
@@ -171,7 +173,8 @@ impl Shown {
         let Self { value, error, interval: (low, high), unit } = self;
         // A standard error beyond the range tells no digits of the value.
         let width = range.map_or(f64::INFINITY, |(least, most)| most - least);
-        let decimals = decimals_of(error.min(0.25 * width)).unwrap_or(5);
+        // Nor do digits of an error that is far within the interval.
+        let decimals = decimals_of(error.max(0.25 * (high - low)).min(0.25 * width)).unwrap_or(5);
         let unit = escaped(unit).replace(' ', "\u{a0}");
         let number = |value: f64| fixed(value, decimals);
         let error = match *error {

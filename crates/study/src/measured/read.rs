@@ -369,7 +369,11 @@ impl Columns<'_> {
             ));
         }
         let heading = self.names.get(place).and_then(|(_, unit)| unit.as_deref());
-        let factor = |unit: &str| quantity::parse(&format!("1 {unit}"), dimension);
+        // A unit with a number is the size of one, such as that of a pixel.
+        let factor = |unit: &str| match unit.starts_with(|c: char| c.is_ascii_digit()) {
+            true => quantity::parse(unit, dimension),
+            false => quantity::parse(&format!("1 {unit}"), dimension),
+        };
         if let (Some(given), Some(heading)) = (spec.unit.as_deref(), heading)
             && let (Ok(by_spec), Ok(by_heading)) = (factor(given), factor(heading))
             && (by_spec - by_heading).abs() > 1e-12 * by_heading.abs()
@@ -383,7 +387,13 @@ impl Columns<'_> {
         let scale = match spec.unit.as_deref().or(heading) {
             None => 1.0,
             Some(unit) => factor(unit).map_err(|error| {
-                MeasuredError::Columns(format!("the unit `{}` of {what}: {error}{}", printable(unit), remedy(&error)))
+                let remedy = match unit {
+                    "px" | "pixel" | "pixels" => {
+                        "; give the length of a pixel instead, such as unit = \"0.21 mm\"".to_owned()
+                    }
+                    _ => remedy(&error),
+                };
+                MeasuredError::Columns(format!("the unit `{}` of {what}: {error}{remedy}", printable(unit)))
             })?,
         };
         self.read.borrow_mut().insert(place);
@@ -415,7 +425,8 @@ impl Columns<'_> {
         let of_another = |cell: &str| cell.split_once('.').is_some_and(|(name, _)| !name.is_empty());
         let headings = self.table.heading.iter().flat_map(|(_, cells)| cells).enumerate();
         headings
-            .filter(|(place, cell)| !read.contains(place) && !of_another(cell))
+            // A comma at the end of the heading makes no column.
+            .filter(|(place, cell)| !read.contains(place) && !of_another(cell) && !cell.trim().is_empty())
             .map(|(_, cell)| cell.clone())
             .collect()
     }
@@ -578,6 +589,13 @@ mod tests {
     fn markers_give_position_and_angle_from_both_sides() {
         let toml = "[marker.a]\nx = \"ax\"\ny = \"ay\"\nunit = \"mm\"\nat = [\"-1 cm\", \"2 cm\"]\n\
             [marker.b]\nx = \"bx\"\ny = \"by\"\nunit = \"mm\"\nat = [\"1 cm\", \"3 cm\"]\n";
+        let of_pixels = toml.replace("unit = \"mm\"", "unit = \"0.5 mm\"");
+        let in_pixels = toml.replace("unit = \"mm\"", "unit = \"px\"");
+        let text = "t\tax\tay\tbx\tby\n".to_owned() + &rows(|k| format!("{k}\t{k}\t40\t{}\t60", k + 40));
+        let scaled = read(&text, &ColumnLayout::read(&of_pixels, "f").unwrap()).unwrap().motion(Sign::AsIs);
+        assert!((scaled.values(Channel::X).unwrap()[7] - 0.0135).abs() < 1e-12, "{:?}", scaled.values(Channel::X));
+        let error = read(&text, &ColumnLayout::read(&in_pixels, "f").unwrap()).unwrap_err().to_string();
+        assert!(error.ends_with("give the length of a pixel instead, such as unit = \"0.21 mm\""), "{error}");
         let layout = ColumnLayout::read(toml, "f").unwrap();
         for (sign, name) in [(1.0, Sign::AsIs), (-1.0, Sign::Reversed)] {
             let row = |k: usize| {

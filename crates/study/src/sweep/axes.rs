@@ -235,6 +235,7 @@ fn listed_files(
 /// Keys with random values: `count`, `seed`, `method`, and the keys.
 pub(super) fn samples(reader: &mut Reader<'_>, table: &DeTable<'_>, node: &Node<'_, '_>) -> Option<Samples> {
     let (mut count, mut seed, mut method, mut keys) = (None, 0, Method::Independent, Vec::new());
+    let before = reader.found.0.len();
     for (name, value) in entries(table) {
         let path = format!("random.{name}");
         match name {
@@ -276,9 +277,12 @@ pub(super) fn samples(reader: &mut Reader<'_>, table: &DeTable<'_>, node: &Node<
         reader.wrong("random.count", Some(node), "missing: how many samples?", "such as count = 100");
         return None;
     };
-    if keys.is_empty() {
+    // A distribution that is refused is one.
+    if keys.is_empty() && reader.found.0.len() == before {
         let remedy = "give a key its distribution, such as contact.feet.friction = { uniform = [0.2, 0.6] }";
         reader.wrong("random", Some(node), "nothing is random", remedy);
+    }
+    if keys.is_empty() {
         return None;
     }
     let sampler = Sampler::new(seed, method, keys.len(), u32::try_from(count).unwrap_or(u32::MAX));

@@ -59,6 +59,8 @@ pub struct CaseRow {
     pub outputs: Vec<String>,
     /// Steps whose contact problem was not solved to tolerance.
     pub unsolved_steps: u64,
+    /// The codes of the warnings about its scene and its run, each once.
+    pub warnings: Vec<String>,
     /// Why it didn't come to its end, in one line.
     pub error: String,
 }
@@ -83,14 +85,15 @@ impl CaseRow {
             line.push(',');
             line.push_str(output);
         }
-        let Self { status, unsolved_steps, error, .. } = self;
-        line.push_str(&format!(",{},{unsolved_steps},{}\n", status.word(), quoted(error)));
+        let Self { status, unsolved_steps, warnings, error, .. } = self;
+        let warnings = warnings.join(" ");
+        line.push_str(&format!(",{},{unsolved_steps},{},{}\n", status.word(), quoted(&warnings), quoted(error)));
         line
     }
 
     fn without_outputs(number: u64, sweep: &Sweep, status: CaseStatus, error: String) -> Self {
         let outputs = vec![String::new(); sweep.outputs().len()];
-        Self { number, status, found: None, outputs, unsolved_steps: 0, error }
+        Self { number, status, found: None, outputs, unsolved_steps: 0, warnings: Vec::new(), error }
     }
 
     /// How often the criterion of a search changed between the values scanned.
@@ -120,10 +123,15 @@ fn run_case(sweep: &Sweep, source: &StudyScene, number: u64, cancel: &Arc<Atomic
     let Some(find) = sweep.find() else { return run_once(sweep, source, number, None, cancel) };
     let column = find.until.column(sweep.outputs());
     let decides = sweep.outputs().iter().position(|output| Some(output.name()) == column);
-    let mut unsolved_steps = 0;
+    let (mut unsolved_steps, mut warnings) = (0, Vec::new());
     let searched = find.search(|value| {
         let Some(row) = run_once(sweep, source, number, Some(&value), cancel).map(Box::new) else { return Err(None) };
         unsolved_steps += row.unsolved_steps;
+        for code in &row.warnings {
+            if !warnings.contains(code) {
+                warnings.push(code.clone());
+            }
+        }
         let at = |why: &str| Box::new(CaseRow { error: format!("at {value}: {why}"), ..CaseRow::clone(&row) });
         if !row.status.is_complete() {
             return Err(Some(at(&row.error)));
@@ -143,9 +151,12 @@ fn run_case(sweep: &Sweep, source: &StudyScene, number: u64, cancel: &Arc<Atomic
                 Some(why) => (CaseStatus::NoLimit, why),
                 None => (row.status, row.error.clone()),
             };
-            CaseRow { status, error, found: Some(found), unsolved_steps, ..*row }
+            CaseRow { status, error, found: Some(found), unsolved_steps, warnings, ..*row }
         }),
-        Err(row) => row.map(|row| CaseRow { outputs: vec![String::new(); row.outputs.len()], unsolved_steps, ..*row }),
+        Err(row) => row.map(|row| {
+            let outputs = vec![String::new(); row.outputs.len()];
+            CaseRow { outputs, unsolved_steps, warnings, ..*row }
+        }),
     }
 }
 
@@ -160,8 +171,8 @@ fn run_once(
 ) -> Option<CaseRow> {
     let refused = |why: String| Some(CaseRow::without_outputs(number, sweep, CaseStatus::Refused, why));
     let failed = |why: String| Some(CaseRow::without_outputs(number, sweep, CaseStatus::Failed, why));
-    let scene = match source.scene(&sweep.setting(number, searched)) {
-        Ok(scene) => scene,
+    let (scene, warned) = match source.scene_with_warnings(&sweep.setting(number, searched)) {
+        Ok(found) => found,
         Err(found) => return refused(Failure::from(found).to_string()),
     };
     let mut simulation = match source.simulation(&scene) {
@@ -181,6 +192,7 @@ fn run_once(
         Ok(recorder) => recorder.sharing(source.stances()),
         Err(error) => return failed(error.to_string()),
     };
+    recorder.note(&warned);
     let ended = match simulation.run(&mut [&mut recorder]) {
         Ok(ended) => ended,
         Err(error) => return failed(error.to_string()),
@@ -210,6 +222,7 @@ fn run_once(
         found: None,
         outputs,
         unsolved_steps: state.tally.unconverged_steps,
+        warnings: record.warnings.warnings().iter().map(|warning| warning.code.to_string()).collect(),
         error,
     })
 }

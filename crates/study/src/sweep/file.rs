@@ -270,7 +270,7 @@ impl Sweep {
 }
 
 /// The columns after the outputs.
-const LAST_COLUMNS: [&str; 3] = ["status", "unsolved_steps", "error"];
+const LAST_COLUMNS: [&str; 4] = ["status", "unsolved_steps", "warnings", "error"];
 /// Names that outputs can't have.
-const RESERVED: [&str; 4] = ["case", "status", "unsolved_steps", "error"];
+const RESERVED: [&str; 5] = ["case", "status", "unsolved_steps", "warnings", "error"];
 const SCENE_EXAMPLE: &str = "name it relative to the sweep file, such as scene = \"rocking.toml\"";

@@ -10,6 +10,8 @@ pub const IDENTITY: &str = "sweep.json";
 /// The version of the program, the sweep, the scene and its files, and the shard.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SweepIdentity {
+    /// The name of the sweep file, for titles; it decides nothing.
+    title: String,
     program: String,
     sweep: String,
     inputs: String,
@@ -53,7 +55,26 @@ impl SweepIdentity {
     /// the scene and of the files that it reads.
     pub fn new<'a>(sweep: &str, inputs: impl IntoIterator<Item = &'a [u8]>, cases: u64, shard: Shard) -> Self {
         let inputs = content_hash(inputs).iter().map(|byte| format!("{byte:02x}")).collect();
-        Self { program: env!("CARGO_PKG_VERSION").to_owned(), sweep: sweep.to_owned(), inputs, cases, shard }
+        Self {
+            title: String::new(),
+            program: env!("CARGO_PKG_VERSION").to_owned(),
+            sweep: sweep.to_owned(),
+            inputs,
+            cases,
+            shard,
+        }
+    }
+
+    /// The same study with a title.
+    #[must_use]
+    pub fn titled(self, title: &str) -> Self {
+        Self { title: title.to_owned(), ..self }
+    }
+
+    /// The title of its page; empty if it has none.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        &self.title
     }
 
     /// The shard.
@@ -83,9 +104,9 @@ impl SweepIdentity {
     /// As the text of its file.
     #[must_use]
     pub fn to_json(&self) -> String {
-        let Self { program, sweep, inputs, cases, shard } = self;
+        let Self { title, program, sweep, inputs, cases, shard } = self;
         let value = json!({
-            "program": program, "cases": cases, "shard": shard.to_string(), "inputs_sha256": inputs, "sweep": sweep,
+            "title": title, "program": program, "cases": cases, "shard": shard.to_string(), "inputs_sha256": inputs, "sweep": sweep,
         });
         format!("{value:#}\n")
     }
@@ -99,6 +120,7 @@ impl SweepIdentity {
         let text = |key: &str| value.get(key).and_then(Value::as_str).map(str::to_owned);
         let read = || {
             Some(Self {
+                title: text("title").unwrap_or_default(),
                 program: text("program")?,
                 sweep: text("sweep")?,
                 inputs: text("inputs_sha256")?,

@@ -179,6 +179,11 @@ impl Journal {
             fs::write(&path, sweep.header()).map_err(io_error(&path))?;
         }
         let bytes = fs::read(&path).map_err(io_error(&path))?;
+        // Rows of other columns can't stand in one table with ours.
+        let header = bytes.split_inclusive(|&byte| byte == b'\n').next().unwrap_or_default();
+        if header.ends_with(b"\n") && header != sweep.header().as_bytes() {
+            return Err(JournalError::Table { path, source: TableError::OtherColumns });
+        }
         let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
         let mut file = File::options().write(true).open(&path).map_err(io_error(&path))?;
         file.set_len(whole as u64).map_err(io_error(&path))?;
@@ -321,6 +326,10 @@ pub fn merge(folders: &[PathBuf]) -> Result<(String, String), JournalError> {
         let place = if ended.exists() { ended } else { running };
         let rows = fs::read_to_string(&place).map_err(io_error(&place))?;
         let (expected, there) = (shard.count(identity.cases()), sorted(std::iter::once(rows.as_str())).len() as u64);
+        let header = |text: &str| text.lines().next().unwrap_or_default().to_owned();
+        if texts.first().is_some_and(|first: &String| header(first) != header(&rows)) {
+            return Err(JournalError::Table { path: place, source: TableError::OtherColumns });
+        }
         if there < expected {
             return Err(JournalError::Unfinished { folder: folder.clone(), missing: expected - there });
         }

@@ -27,7 +27,9 @@ pub(crate) mod spec;
 mod tally;
 
 pub use case::{CaseRow, CaseStatus, run_cases};
-pub use figures::{Ensemble, FIGURE_FILES, StudyFigure, StudyTable, TableError, study_figures, study_page};
+pub use figures::{
+    Ensemble, FIGURE_FILES, StudyFigure, StudyTable, TableError, incomparable, study_figures, study_page,
+};
 pub use file::{FilesOf, Sweep};
 pub use identity::{IDENTITY, SweepIdentity, SweepIdentityError};
 pub use journal::{

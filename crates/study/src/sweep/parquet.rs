@@ -49,7 +49,7 @@ impl CellType {
     fn of_name(name: &str) -> Option<Self> {
         let [_, at_low, at_high, changes, runs] = COLUMNS;
         match name {
-            "status" | "error" => Some(Self::Text),
+            "status" | "warnings" | "error" => Some(Self::Text),
             "case" | "unsolved_steps" => Some(Self::Whole),
             _ if name == changes || name == runs => Some(Self::Whole),
             _ if name == at_low || name == at_high => Some(Self::Bool),
@@ -89,7 +89,7 @@ fn number(cell: &str) -> Option<f64> {
 /// The bytes of `results.parquet` for the text of `results.csv`.
 ///
 /// `case`, numbers of steps, changes and runs are whole numbers, `find.at_low` and `find.at_high`
-/// true or false, `status` and `error` texts. A column of a key or an output holds doubles if each of
+/// true or false, `status`, `warnings` and `error` texts. A column of a key or an output holds doubles if each of
 /// its cells is a number, true or false if each is one of these, else texts; an empty cell is null, a
 /// column without any cell one of doubles. The metadata have the units of columns under `units`.
 ///
@@ -232,9 +232,9 @@ mod tests {
 
     #[test]
     fn cells_come_back_with_their_types_and_empty_ones_as_null() {
-        let text = "case,block.b.tilt,time.scheme,largest,over,flag,mixed,none,status,unsolved_steps,error\n\
-            0,0.1,moreau-jean,2e-301,rests,true,1,,complete,0,\n\
-            1,-0.2,moreau-jean,,rocks,,inf,,failed,3,\"at 1, \"\"x\"\"\"\n";
+        let text = "case,block.b.tilt,time.scheme,largest,over,flag,mixed,none,status,unsolved_steps,warnings,error\n\
+            0,0.1,moreau-jean,2e-301,rests,true,1,,complete,0,scene stiff-step,\n\
+            1,-0.2,moreau-jean,,rocks,,inf,,failed,3,,\"at 1, \"\"x\"\"\"\n";
         let (rows, units) = fields(text);
         let word = |text: &str| Field::Str(text.to_owned());
         let first = [
@@ -248,11 +248,12 @@ mod tests {
             Field::Null,
             word("complete"),
             Field::Long(0),
+            word("scene stiff-step"),
             Field::Null,
         ];
         assert_eq!(rows[0], first);
         assert_eq!((rows.len(), &rows[1][3], &rows[1][5]), (2, &Field::Null, &Field::Null));
-        assert_eq!((&rows[1][6], &rows[1][10]), (&word("inf"), &word("at 1, \"x\"")));
+        assert_eq!((&rows[1][6], &rows[1][11]), (&word("inf"), &word("at 1, \"x\"")));
         assert_eq!(units, "{\"block.b.tilt\":\"rad\",\"largest\":\"m/s\"}");
     }
 

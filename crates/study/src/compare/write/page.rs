@@ -6,7 +6,7 @@ use crate::measured::{Channel, MeasuredMotion, Sign};
 use crate::write::{html_list, html_table, percent, power, short};
 use std::fmt::Write;
 use teeter_plot::{AxisError, escaped};
-use teeter_report::document;
+use teeter_report::{document, with_unit};
 
 pub(crate) const STYLE: &str = "\
 main > section { margin-top: 1.5rem; }\n\
@@ -23,8 +23,28 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     text.replace('-', "\u{2212}")
 }
 
+/// A share of this size or more is one of rounding: what it is compared with doesn't move.
+const MOST_SHARE: f64 = 100.0;
+
 fn optional(value: Option<f64>, show: impl Fn(f64) -> String) -> String {
     value.filter(|value| value.is_finite()).map_or("–".to_owned(), show)
+}
+
+/// Rows of the run this many times as far apart as those of the table are told: what is between them is interpolated.
+const COARSE: f64 = 1.5;
+
+/// A warning where the run has rows farther apart than the table.
+fn coarse_run(comparison: &Comparison) -> Option<String> {
+    let mut steps: Vec<f64> = comparison.trace.times().windows(2).map(|t| t[1] - t[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    let (run, table) = (*steps.get(steps.len() / 2)?, comparison.measured.interval());
+    (run > COARSE * table).then(|| {
+        let [every, own] = [table, run].map(|t| with_unit(t, "s"));
+        format!(
+            "warning: the rows of the run are {own} apart, those of the table {every}: impacts between rows of the run are smoothed; \
+             run the scene with --set output.every=\"{every}\""
+        )
+    })
 }
 
 /// What was found, in sentences.
@@ -42,6 +62,7 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
         how(alignment.shift_found),
         how(alignment.sign_found)
     )];
+    texts.extend(coarse_run(comparison));
     let rows = &comparison.rows;
     let last = measured.t.get(rows.end.saturating_sub(1)).copied().unwrap_or(0.0);
     let to = format!(
@@ -198,7 +219,7 @@ fn quantity_row(found: &ChannelComparison) -> Vec<String> {
     let d = found.differences;
     let unit = if unit == "°" { unit.to_owned() } else { format!("\u{a0}{unit}") };
     let value = |x: f64| format!("{}{unit}", power(factor * x).replace('-', "\u{2212}"));
-    let share = |x: f64| if d.scale > 0.0 { percent(x / d.scale) } else { "–".to_owned() };
+    let share = |x: f64| if x < MOST_SHARE * d.scale { percent(x / d.scale) } else { "–".to_owned() };
     vec![
         found.channel.title().to_owned(),
         value(d.rms),
@@ -264,7 +285,11 @@ fn headline(comparison: &Comparison) -> String {
     let d = found.differences;
     let (unit, factor) = found.channel.shown();
     let gap = if unit == "°" { "" } else { "\u{a0}" };
-    let share = if d.scale > 0.0 { format!(", {} of the largest", percent(d.rms / d.scale)) } else { String::new() };
+    let share = if d.rms < MOST_SHARE * d.scale {
+        format!(", {} of the largest", percent(d.rms / d.scale))
+    } else {
+        String::new()
+    };
     let last = comparison.measured.t.get(comparison.rows.end.saturating_sub(1)).copied().unwrap_or(0.0);
     let mut text = format!(
         "{}: root mean square difference {}{gap}{unit}{share}, up to t = {}\u{a0}s",
@@ -313,8 +338,8 @@ fn half_cycles(comparison: &Comparison) -> String {
             (number + 1).to_string(),
             fixed(degree * pair.measured.amplitude, 3),
             optional(simulated, |value| fixed(value, 3)),
-            optional(pair.amplitude_ratio().map(|ratio| 100.0 * (ratio - 1.0)), |value| {
-                format!("{}\u{a0}%", fixed(value, 1))
+            optional(pair.amplitude_ratio().map(|ratio| ratio - 1.0).filter(|of| of.abs() < MOST_SHARE), |of| {
+                format!("{}\u{a0}%", fixed(100.0 * of, 1))
             }),
             optional(pair.measured.end, |value| fixed(value, 4)),
             optional(pair.simulated.and_then(|half| half.end), |value| fixed(value, 4)),

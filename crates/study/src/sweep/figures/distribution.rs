@@ -18,7 +18,7 @@ pub(crate) struct Distribution {
     /// A column by whose values the cases are told apart.
     pub(crate) by: Option<String>,
     /// Larger values count as this one.
-    at_most: Option<f64>,
+    pub(crate) at_most: Option<f64>,
     label: Option<String>,
 }
 

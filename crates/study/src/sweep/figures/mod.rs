@@ -2,6 +2,7 @@
 //! overturning. The same for several studies side by side.
 
 mod bands;
+mod comparable;
 mod distribution;
 mod fragility;
 mod label;
@@ -14,6 +15,7 @@ use super::output::Output;
 use super::spec::{Node, Reader};
 use crate::write::typeset;
 pub(crate) use bands::Bands;
+pub use comparable::incomparable;
 pub(crate) use distribution::Distribution;
 pub(crate) use fragility::Fragility;
 pub(crate) use overturning::Overturning;

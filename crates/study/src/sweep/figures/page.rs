@@ -20,8 +20,12 @@ pub fn study_page(title: &str, studies: &[Ensemble], figures: &[StudyFigure]) ->
             0 => String::new(),
             some => format!(", {some} without a result"),
         };
+        let warned = match study.table.warned() {
+            0 => String::new(),
+            some => format!(", {some} with warnings"),
+        };
         let name = if studies.len() > 1 { format!("{}: ", study.name) } else { String::new() };
-        format!("{name}{} cases{failed}", study.table.len())
+        format!("{name}{} cases{failed}{warned}", study.table.len())
     };
     let subtitle = studies.iter().map(told).collect::<Vec<_>>().join(" · ");
     let subtitle = format!("{subtitle} · teeter {}", env!("CARGO_PKG_VERSION"));

@@ -17,6 +17,11 @@ pub enum TableError {
     /// Another table.
     #[error("the table has no column `status`: it is not the result of a sweep")]
     NoStatus,
+    /// The columns of another version of the program.
+    #[error(
+        "its columns are not those that this program writes: run the study again, in another folder or with --force"
+    )]
+    OtherColumns,
 }
 
 impl StudyTable {
@@ -63,6 +68,16 @@ impl StudyTable {
     /// The numbers of a column for all cases that ran to their end; NaN where there is none.
     pub(crate) fn numbers(&self, column: &str) -> Vec<f64> {
         self.completed(column).into_iter().map(|cell| cell.parse().unwrap_or(f64::NAN)).collect()
+    }
+
+    /// Number of cases with warnings.
+    #[must_use]
+    pub fn warned(&self) -> usize {
+        let place = self.place("warnings");
+        self.rows
+            .iter()
+            .filter(|row| place.and_then(|place| row.get(place)).is_some_and(|cell| !cell.is_empty()))
+            .count()
     }
 
     /// Number of cases that didn't run to their end.
