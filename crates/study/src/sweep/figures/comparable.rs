@@ -16,11 +16,14 @@ struct Compared {
     shown: String,
 }
 
+/// What of a figure has to be the same; `None` where a study doesn't ask for it.
+type Figure = fn(&Ensemble) -> Option<Vec<Compared>>;
+
 /// Why figures that all studies ask for can't be put side by side; `None` if they can.
 #[must_use]
 pub fn incomparable(studies: &[Ensemble]) -> Option<String> {
     let (first, others) = studies.split_first()?;
-    let figures: [fn(&Ensemble) -> Option<Vec<Compared>>; 3] = [fragility, distribution, bands];
+    let figures: [Figure; 3] = [fragility, distribution, bands];
     for compared in figures {
         let all: Option<Vec<_>> = others.iter().map(|study| Some((study, compared(study)?))).collect();
         let (Some(ours), Some(all)) = (compared(first), all) else { continue };
