@@ -75,7 +75,7 @@ A run gives warnings about what it has measured at its end, on the terminal, on 
 | `energy-account` | the energy identity is off by more than rounding |
 | `deep-penetration`, `far-turn` | penetrations of more than a tenth of a block's shorter side; rotations of more than 0.1 rad per step |
 | `contested-landing` | a block landed while bounces of another of its contacts had been cut short by the steps of `moreau-jean-located` ([accuracy.md](accuracy.md)) |
-| `crest-impact` | a crest of a beam struck a base that came down on it: what a step makes of such a landing depends on its size ([schemes.md](schemes.md)) |
+| `crest-impact` | a hump of a beam struck a base that came down on it: what a step makes of such a landing depends on its size ([schemes.md](schemes.md)) |
 | `fast-pass` | two blocks so fast, or turning so fast, that a step may miss their contact; a block that a step took through the ground |
 | `passes-through`, `between-corners`, `past-the-end` | overlapping bodies where no contact is modelled ([impacts.md](impacts.md)) |
 | `large-deflection`, `yield` | a beam beyond linear theory, or over its yield strength |
