@@ -78,10 +78,15 @@ export function plotsOfRounding(drawn, data, summary, envelopes) {
     else if (id === "energy" || id === "works") each("energy", () => summary.energy.scale / 3);
     else problems.push(`plot ${id}: no scale is known for it`);
   };
+  const impulses = (points) => all(points, (point) => largest(point.impacts ?? []));
   const ofContact = (id, contact, what) => {
     const key = what === "tangential" ? "tangential" : "normal";
     const own = forces.points.filter((point) => point.contact === contact);
-    require(id, `${key} force`, all(own, (point) => largest(point[key])), contactForce);
+    const impulse = impulses(own);
+    if (what === "impacts") return require(id, "normal impulse", impulse, impulses(forces.points));
+    // The state of a contact without forces between its impacts is told by these.
+    if (what === "state" && impulse > 0 && forces.forceless?.includes(contact)) return undefined;
+    return require(id, `${key} force`, all(own, (point) => largest(point[key])), contactForce);
   };
   const portrait = ({ id, x_label: label, series }) => series.forEach(({ label: name, index, x }) =>
     require(id, `motion ${name}`, si(unitOf(label)) * travel(x), id === "phase" ? 1 : reach(scenery.blocks[index])));
@@ -99,7 +104,7 @@ export function plotsOfRounding(drawn, data, summary, envelopes) {
 
   for (const id of drawn) {
     const panel = data.panels.find((one) => one.id === id);
-    const [, what, number] = id.match(/^(normal|tangential|state)-(\d+)$/) ?? [];
+    const [, what, number] = id.match(/^(normal|tangential|state|impacts)-(\d+)$/) ?? [];
     if (panel) overTime(panel);
     else if (data.portraits.some((one) => one.id === id)) portrait(data.portraits.find((one) => one.id === id));
     else if (what) ofContact(id, Number(number), what);
