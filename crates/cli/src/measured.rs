@@ -51,10 +51,7 @@ fn rate(text: &str) -> Result<f64, String> {
     match quantity::parse(text, Dimension::RATE) {
         Ok(rate) if rate > 0.0 => Ok(rate),
         Ok(_) => Err("must be positive, such as \"165 Hz\"".to_owned()),
-        Err(error) => Err(match error.remedy() {
-            Some(remedy) => format!("{error}; {remedy}"),
-            None => error.to_string(),
-        }),
+        Err(error) => Err(error.with_remedy()),
     }
 }
 

@@ -85,6 +85,15 @@ fn got_text(got: Dimension, unit: &str) -> String {
 }
 
 impl QuantityError {
+    /// What is wrong, and after a semicolon what to write instead, if that is known.
+    #[must_use]
+    pub fn with_remedy(&self) -> String {
+        match self.remedy() {
+            Some(remedy) => format!("{self}; {remedy}"),
+            None => self.to_string(),
+        }
+    }
+
     /// What to write instead, if that doesn't depend on the key.
     pub fn remedy(&self) -> Option<String> {
         match self {

@@ -1,10 +1,10 @@
-//! Where an elastic surface has come out under a base.
+//! Where an elastic surface has come out under a base: its summits, humps in the words of a scene.
 
 use super::between;
 use crate::{Model, Vector};
-use teeter_detect::{Anchor, Candidate, ContactId, Frame, Geometry};
+use teeter_detect::{BodyId, Candidate, ContactId, Frame, Geometry};
 
-/// A summit within this part of the base's reach of an earlier one is that one.
+/// A summit within this part of the base's length of an earlier one is that one.
 const SAME: f64 = 1e-3;
 
 /// A summit that was found in some round.
@@ -13,44 +13,41 @@ struct Summit<const D: usize> {
     /// Where it was last, with an identity of its own.
     candidate: Candidate<D>,
     /// Its frame in the coordinates of the base.
-    on_base: Frame<D>,
+    local_frame: Frame<D>,
     /// Its identity among the candidates of this round, if it is one of them.
     now: Option<ContactId>,
 }
 
 impl<const D: usize> Summit<D> {
     fn found(model: &Model<D>, q: &[f64], candidate: &Candidate<D>, id: ContactId) -> Self {
-        let on_base = candidate.frame * turn(model, q, &candidate.sides[0]);
-        Self { candidate: Candidate { id, ..*candidate }, on_base, now: Some(candidate.id) }
+        let local_frame = candidate.frame * rotation(model, q, candidate.sides[0].body);
+        Self { candidate: Candidate { id, ..*candidate }, local_frame, now: Some(candidate.id) }
     }
 
     /// Takes its place at `q`: the same point of the surface, and what of the base is over it by now.
     fn follow(&mut self, model: &Model<D>, q: &[f64]) {
         let candidate = &mut self.candidate;
-        candidate.frame = self.on_base * turn(model, q, &candidate.sides[0]).transpose();
+        candidate.frame = self.local_frame * rotation(model, q, candidate.sides[0].body).transpose();
         let mut apart: Vector<D> = candidate.frame * between(model, q, &candidate.sides);
         candidate.gap = apart[0];
         apart[0] = 0.0;
-        candidate.sides[0].point -= self.on_base.transpose() * apart;
+        candidate.sides[0].point -= self.local_frame.transpose() * apart;
     }
 }
 
 /// The rotation of a body, from its coordinates to the world's.
-fn turn<const D: usize>(model: &Model<D>, q: &[f64], at: &Anchor<D>) -> Frame<D> {
+fn rotation<const D: usize>(model: &Model<D>, q: &[f64], body: BodyId) -> Frame<D> {
     let placed = model.placed_at(q);
     let place = |point: Vector<D>| {
         let mut place = [Vector::zeros()];
-        placed.place(at.body, &[point], &mut place);
+        placed.place(body, &[point], &mut place);
         place[0]
     };
     let origin = place(Vector::zeros());
-    let mut turn = Frame::<D>::zeros();
-    for k in 0..D {
-        let mut axis = Vector::<D>::zeros();
-        axis[k] = 1.0;
-        turn.set_column(k, &(place(axis) - origin));
-    }
-    turn
+    Frame::<D>::from_fn(|row, column| {
+        let axis = Vector::from_fn(|k, _| f64::from(k == column));
+        (place(axis) - origin)[row]
+    })
 }
 
 /// All summits that were found so far.
@@ -69,17 +66,16 @@ impl<const D: usize> Summits<D> {
         let is_summit = |candidate: &Candidate<D>| model.detector().is_summit(candidate.id);
         self.known.iter_mut().for_each(|summit| summit.now = None);
         for candidate in candidates.iter().filter(|candidate| is_summit(candidate)) {
-            let reach = candidates.iter().filter(|other| other.id.pair() == candidate.id.pair());
-            let on_base = |of: &Candidate<D>| of.sides[0].point;
-            let length = reach.map(|other| (on_base(other) - on_base(candidate)).norm()).fold(0.0, f64::max);
-            let near = |summit: &&mut Summit<D>| {
-                let same = summit.candidate.id.pair() == candidate.id.pair()
-                    && summit.candidate.sides[0].body == candidate.sides[0].body;
-                same && summit.now.is_none()
-                    && (on_base(&summit.candidate) - on_base(candidate)).norm() <= SAME * length
+            let apart = |other: &Candidate<D>| (other.sides[0].point - candidate.sides[0].point).norm();
+            let of_pair = |other: &&Candidate<D>| other.id.pair() == candidate.id.pair();
+            let length = candidates.iter().filter(of_pair).map(apart).fold(0.0, f64::max);
+            let is_same = |summit: &&mut Summit<D>| {
+                let known = &summit.candidate;
+                let of_base = of_pair(&known) && known.sides[0].body == candidate.sides[0].body;
+                of_base && summit.now.is_none() && apart(known) <= SAME * length
             };
             let number = self.known.len() as u32;
-            if let Some(summit) = self.known.iter_mut().find(near) {
+            if let Some(summit) = self.known.iter_mut().find(is_same) {
                 *summit = Summit::found(model, q, candidate, summit.candidate.id);
             } else {
                 let id = ContactId::new(candidate.id.pair(), u32::MAX - number);

@@ -79,6 +79,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         let tolerance = self.tolerance(&from.q);
         loop {
             let outcome = self.step.attempt(model, from, rest, work)?;
+            self.step.find_new(model, tolerance, work)?;
             if model.has_springs() && self.close_springs_within(model, from, tolerance, work)? {
                 work.counts.refused_attempts += 1;
                 continue;
@@ -111,8 +112,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
         }
     }
 
-    /// Closes the springs that are inside at the start and at the end of the attempt: they may go on for others, whichever way they move.
-    /// Whether any are new.
+    /// Closes those of the attempt's new contacts that have springs and are inside at its start, too: they may go on for others, whichever way
+    /// they move. Whether there are any.
     fn close_springs_within(
         &mut self,
         model: &Model<D>,
@@ -121,7 +122,6 @@ impl<const D: usize> MoreauJeanLocated<D> {
         work: &mut Workspace<D>,
     ) -> Result<bool, Mismatch> {
         let closed = self.step.closed.len();
-        self.step.find_new(model, tolerance, work)?;
         for k in 0..self.step.new.len() {
             let id = self.step.new[k];
             let has_spring = find(&work.candidates, id).is_some_and(|deep| model.spring(deep.law).is_some());
@@ -156,6 +156,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             let part = StepSpan { start: rest.start, end: rest.start + tau, h: tau };
             self.step.free_velocity(model, from, &part, work)?;
             outcome = self.step.attempt(model, from, &part, work)?;
+            self.step.find_new(model, tolerance, work)?;
             work.counts.refused_attempts += 1;
             self.find_hits(model, from, tolerance, AT_START * tolerance, work)?;
             let first = self.first(model, work)?;
@@ -175,8 +176,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
         Ok((outcome, Some(0.0)))
     }
 
-    /// Adds the open contacts that are inside their surface at the end of the attempt, deeper than
-    /// they began, to the hits; only those that began at least so far above.
+    /// Adds those of the attempt's new contacts that are deeper than they began to the hits; only
+    /// those that began at least so far above.
     fn find_hits(
         &mut self,
         model: &Model<D>,
@@ -185,7 +186,6 @@ impl<const D: usize> MoreauJeanLocated<D> {
         least: f64,
         work: &mut Workspace<D>,
     ) -> Result<(), Mismatch> {
-        self.step.find_new(model, tolerance, work)?;
         for k in 0..self.step.new.len() {
             let id = self.step.new[k];
             let known = self.hits.iter().any(|hit| hit.id == id);

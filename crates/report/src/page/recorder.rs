@@ -148,8 +148,8 @@ pub struct PageRecorder {
     closings: ClosingMonitor<2>,
     /// The contacts that closed in the step.
     closed: Vec<Closed>,
-    /// The blocks that feel the impacts of a step.
-    struck: Vec<usize>,
+    /// By blocks: whether they feel the impacts of a step. Memory.
+    struck: Vec<bool>,
 }
 
 impl PageRecorder {
@@ -312,8 +312,8 @@ impl PageRecorder {
             for contact in part.contacts {
                 let Some((pair, point)) = place(&self.layout, contact) else { continue };
                 let Some(drawn) = self.scenery.contacts.get(pair) else { continue };
-                let strikes = part.kind == PhaseKind::Impact
-                    || self.free_blocks(contact).any(|block| self.struck.contains(&block));
+                let strikes =
+                    part.kind == PhaseKind::Impact || self.free_blocks(contact).any(|block| self.struck[block]);
                 // Springs give the force of an impact its course.
                 let of = if strikes && !drawn.has_duration { Of::Impact { lasting: part.duration } } else { Of::Force };
                 let slip = slip(contact, part.duration, part.balance);
@@ -334,18 +334,22 @@ impl PageRecorder {
     fn find_struck(&mut self, contacts: &[Contact<2>], end: f64, closed: &[Closed]) {
         let mut struck = std::mem::take(&mut self.struck);
         struck.clear();
+        struck.resize(self.scenery.blocks.len(), false);
         let rigid = |of: &&Closed| {
             let pair = self.scenery.contacts.get(of.contact.id.pair() as usize);
             of.closing == Closing::Impact && of.t == end && pair.is_some_and(|pair| !pair.has_duration)
         };
-        closed.iter().filter(rigid).for_each(|of| struck.extend(self.free_blocks(&of.contact)));
-        let mut known = 0;
-        while struck.len() > known {
-            known = struck.len();
+        let mut spreads = false;
+        for of in closed.iter().filter(rigid) {
+            self.free_blocks(&of.contact).for_each(|block| struck[block] = true);
+            spreads = true;
+        }
+        while std::mem::take(&mut spreads) {
             for contact in contacts.iter().filter(|contact| contact.p[0] > 0.0) {
-                if self.free_blocks(contact).any(|block| struck.contains(&block)) {
-                    let new = self.free_blocks(contact).filter(|block| !struck.contains(block)).collect::<Vec<_>>();
-                    struck.extend(new);
+                let count = self.free_blocks(contact).filter(|block| struck[*block]).count();
+                if count > 0 && count < self.free_blocks(contact).count() {
+                    self.free_blocks(contact).for_each(|block| struck[block] = true);
+                    spreads = true;
                 }
             }
         }

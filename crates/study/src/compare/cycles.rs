@@ -190,40 +190,37 @@ fn summit(t: &[f64], phi: &[f64], top: usize) -> (f64, f64) {
 /// ([`pair_impacts`]), else that of the impact at the begin; else the two that have most of their time in common.
 #[must_use]
 pub fn pair_half_cycles(measured: &Swing, simulated: &Swing) -> Vec<HalfCyclePair> {
-    let impacts: Vec<[f64; 2]> = pair_impacts(measured, simulated)
-        .iter()
-        .filter_map(|pair| Some([pair.measured?.t, pair.simulated?.t]))
-        .collect();
-    let are_paired =
-        |t: Option<f64>, other: Option<f64>| t.zip(other).is_some_and(|(t, other)| impacts.contains(&[t, other]));
-    let same_side = |a: &HalfCycle, b: &HalfCycle| a.amplitude * b.amplitude > 0.0;
-    let common = |a: &HalfCycle, b: &HalfCycle| {
-        let last = |half: &HalfCycle| half.end.unwrap_or(f64::INFINITY).min(1e12);
-        last(a).min(last(b)) - a.begin.max(b.begin)
-    };
-    let mut partners: Vec<Option<usize>> = vec![None; measured.half_cycles.len()];
-    let mut pair_up = |belong: &dyn Fn(&HalfCycle, &HalfCycle) -> bool| {
-        loop {
-            let mut best: Option<(f64, usize, usize)> = None;
-            for (k, half) in measured.half_cycles.iter().enumerate().filter(|(k, _)| partners[*k].is_none()) {
-                for (j, other) in simulated.half_cycles.iter().enumerate() {
-                    let is_free = same_side(half, other) && !partners.contains(&Some(j));
-                    let shared = common(half, other);
-                    if is_free && belong(half, other) && best.is_none_or(|(most, ..)| shared > most) {
-                        best = Some((shared, k, j));
-                    }
-                }
-            }
-            let Some((_, k, j)) = best else { break };
-            partners[k] = Some(j);
+    let (ours, theirs) = (&measured.half_cycles, &simulated.half_cycles);
+    let mut partners = vec![None; ours.len()];
+    let mut is_taken = vec![false; theirs.len()];
+    let mut join = |k: usize, j: usize| {
+        if partners[k].is_none() && !is_taken[j] && ours[k].amplitude * theirs[j].amplitude > 0.0 {
+            (partners[k], is_taken[j]) = (Some(j), true);
         }
     };
-    pair_up(&|a, b| are_paired(a.end, b.end));
-    pair_up(&|a, b| are_paired(Some(a.begin), Some(b.begin)));
-    pair_up(&|a, b| common(a, b) > 0.0);
-    let pairs = measured.half_cycles.iter().zip(&partners);
+    let impacts: Vec<(f64, f64)> = pair_impacts(measured, simulated)
+        .iter()
+        .filter_map(|pair| Some((pair.measured?.t, pair.simulated?.t)))
+        .collect();
+    let bounds: [fn(&HalfCycle) -> Option<f64>; 2] = [|half| half.end, |half| Some(half.begin)];
+    for bound in bounds {
+        for (t, other) in &impacts {
+            let at = |halves: &[HalfCycle], t: f64| halves.iter().position(|half| bound(half) == Some(t));
+            if let (Some(k), Some(j)) = (at(ours, *t), at(theirs, *other)) {
+                join(k, j);
+            }
+        }
+    }
+    let last = |half: &HalfCycle| half.end.unwrap_or(f64::INFINITY).min(1e12);
+    let common = |a: &HalfCycle, b: &HalfCycle| last(a).min(last(b)) - a.begin.max(b.begin);
+    let all = (0..ours.len()).flat_map(|k| (0..theirs.len()).map(move |j| (k, j)));
+    let mut overlaps: Vec<(f64, usize, usize)> =
+        all.map(|(k, j)| (common(&ours[k], &theirs[j]), k, j)).filter(|(time, ..)| *time > 0.0).collect();
+    overlaps.sort_by(|a, b| b.0.total_cmp(&a.0));
+    overlaps.into_iter().for_each(|(_, k, j)| join(k, j));
+    let pairs = ours.iter().zip(partners);
     pairs
-        .map(|(half, other)| HalfCyclePair { measured: *half, simulated: other.map(|k| simulated.half_cycles[k]) })
+        .map(|(half, partner)| HalfCyclePair { measured: *half, simulated: partner.map(|j: usize| theirs[j]) })
         .collect()
 }
 

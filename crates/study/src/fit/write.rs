@@ -139,7 +139,7 @@ fn with_error(found: &Estimate) -> String {
             (false, false) => format!("{value}{unit} ({from} to {to}, 95 %)"),
         };
     }
-    let Some(decimals) = decimals_of(error).and_then(|_| decimals_of(0.25 * (above + below))) else {
+    let Some(decimals) = decimals_of(error).and(decimals_of(0.25 * (above + below))) else {
         return format!("{}{unit}", short(value));
     };
     format!("{value:.decimals$} ± {:.decimals$}{unit} (95 %)", 0.5 * (above + below))

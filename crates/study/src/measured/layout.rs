@@ -190,10 +190,7 @@ pub(super) fn rate(text: &str) -> Result<f64, String> {
     match quantity::parse(text, Dimension::RATE) {
         Ok(rate) if rate > 0.0 => Ok(rate),
         Ok(_) => Err("must be positive".to_owned()),
-        Err(error) => Err(match error.remedy() {
-            Some(remedy) => format!("{error}; {remedy}"),
-            None => error.to_string(),
-        }),
+        Err(error) => Err(error.with_remedy()),
     }
 }
 

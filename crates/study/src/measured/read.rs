@@ -277,11 +277,6 @@ impl Measured {
     }
 }
 
-/// What would be right instead, to be added to an error.
-fn remedy(error: &quantity::QuantityError) -> String {
-    error.remedy().map(|remedy| format!("; {remedy}")).unwrap_or_default()
-}
-
 impl Marker {
     /// Whether another one is at the same place in all rows that have both.
     fn is_always_at(&self, other: &Self) -> bool {
@@ -387,13 +382,13 @@ impl Columns<'_> {
         let scale = match spec.unit.as_deref().or(heading) {
             None => 1.0,
             Some(unit) => factor(unit).map_err(|error| {
-                let remedy = match unit {
+                let told = match unit {
                     "px" | "pixel" | "pixels" => {
-                        "; give the length of a pixel instead, such as unit = \"0.21 mm\"".to_owned()
+                        format!("{error}; give the length of a pixel instead, such as unit = \"0.21 mm\"")
                     }
-                    _ => remedy(&error),
+                    _ => error.with_remedy(),
                 };
-                MeasuredError::Columns(format!("the unit `{}` of {what}: {error}{remedy}", printable(unit)))
+                MeasuredError::Columns(format!("the unit `{}` of {what}: {told}", printable(unit)))
             })?,
         };
         self.read.borrow_mut().insert(place);

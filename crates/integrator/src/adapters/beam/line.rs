@@ -157,7 +157,7 @@ impl Line {
         let mut left = None;
         for two in nodes[first - 1..].windows(2).take_while(|two| two[0] < high) {
             let (from, to) = (two[0].max(low), two[1].min(high));
-            // The slope of a beam that shears has a kink at a node under a force or a mass: what counts is that on this side.
+            // The slope of a beam that shears jumps at a node under a force or a mass: an element has the slopes within it.
             let begin = from + EDGE * (to - from);
             let length = to - from - 2.0 * (begin - from);
             let [start, middle, end] = [0.0, 0.5, 1.0].map(|t| rise(begin + t * length));
