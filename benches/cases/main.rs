@@ -32,11 +32,12 @@ type Study = (&'static str, &'static str, &'static str, [&'static str; 3], &'sta
 const SUMMARY: &str = "overturned_at = 'overturned_at'\nlargest = 'max_phi_over_alpha'";
 const COLUMN: &str = "largest = { max_abs = 'rocker.phi' }";
 
-const STUDIES: [Study; 6] = [
+const STUDIES: [Study; 7] = [
     ("ground, friction", "block-on-ground", "10 ms", ["contact.feet.friction", "0.3", "0.6"], SUMMARY),
     ("ground, friction; a column", "block-on-ground", "10 ms", ["contact.feet.friction", "0.3", "0.6"], COLUMN),
     ("ground, height", "block-on-ground", "10 ms", ["block.rocker.height", "'12 cm'", "'15 cm'"], SUMMARY),
     ("one sine, scale", "block-under-one-sine", "40 ms", ["signal.shake.scale", "0.5", "0.9"], SUMMARY),
+    ("beam, spin", "block-on-beam", "10 ms", ["block.rocker.spin", "'0 rad/s'", "'0.1 rad/s'"], SUMMARY),
     ("beam, friction", "block-on-beam", "10 ms", ["contact.feet.friction", "0.3", "0.6"], SUMMARY),
     ("beam, thickness", "block-on-beam", "10 ms", ["beam.table.thickness", "'0.15 cm'", "'0.2 cm'"], SUMMARY),
 ];
@@ -45,7 +46,9 @@ fn main() -> Result<()> {
     let rounds = if std::env::args().any(|arg| arg == "--test") { 1 } else { ROUNDS };
     println!("| study | steps | case, µs | steps, µs | overhead, µs | least … most |");
     println!("|---|---:|---:|---:|---:|---:|");
-    for study in STUDIES {
+    // A name, or part of one, chooses studies.
+    let parts: Vec<String> = std::env::args().skip(1).filter(|arg| !arg.starts_with('-')).collect();
+    for study in STUDIES.into_iter().filter(|(name, ..)| parts.iter().all(|part| name.contains(part.as_str()))) {
         println!("{}", row(study, rounds)?);
     }
     Ok(())

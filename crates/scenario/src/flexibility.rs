@@ -8,7 +8,7 @@
 //! 0.71, 0.14, 0.08, 0.04 of it (1, 3, 2, 5 elements) are off by 60, 13, 2, 1 % however fine the
 //! step.
 
-use crate::scene::{BeamScene, BlockScene, Placement, Scene, SupportingBody};
+use crate::scene::{BeamScene, BlockScene, Placement, Reduction, Scene, SupportingBody};
 use crate::stable_step;
 use teeter_beam::{Beam, BeamSpec, MatrixWeights, ShapeAt};
 
@@ -46,13 +46,14 @@ pub(crate) struct MissingFlexibility {
 }
 
 /// A load on a beam, and where it may act.
+#[derive(Debug, Clone, PartialEq)]
 struct LoadedPoints {
     what: String,
     at: Vec<f64>,
     how: LoadPattern,
 }
 
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum LoadPattern {
     /// Both feet of a rocking block, or its only one on the beam: any distribution between them.
     Rocking,
@@ -62,74 +63,87 @@ enum LoadPattern {
     Along,
 }
 
-/// The largest missing part for a beam, if that is more than [`MOST_MISSING`].
-pub(crate) fn missing_flexibility(scene: &Scene, number: usize) -> Option<MissingFlexibility> {
-    let of = &scene.beams[number];
-    let loaded_points = loaded_points(scene, number);
-    // An unloaded beam lacks nothing.
-    if loaded_points.is_empty() {
-        return None;
+/// What the flexibility that a model of a beam lacks depends on.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Flexibility {
+    spec: BeamSpec,
+    reduction: Option<Reduction>,
+    loaded_points: Vec<LoadedPoints>,
+}
+
+impl Flexibility {
+    /// That of a beam of the scene; `None` for one without loads, which lacks nothing.
+    pub(crate) fn of(scene: &Scene, number: usize) -> Option<Self> {
+        let BeamScene { spec, reduction, .. } = &scene.beams[number];
+        let loaded_points = Some(loaded_points(scene, number)).filter(|points| !points.is_empty())?;
+        Some(Self { spec: spec.clone(), reduction: *reduction, loaded_points })
     }
-    let (omega, _) = stable_step::first_frequency(&of.spec)?;
-    // At the frequency of the first mode, so that a beam without supports has a flexibility too.
-    let mass = omega * omega;
-    let exact: Vec<FlexibilityMatrix> = loaded_points
-        .iter()
-        .map(|points| Beam::new(fine(of, &points.at)).ok().and_then(|beam| of_mesh(&beam, &points.at, mass)))
-        .collect::<Option<_>>()?;
-    let worst = |has: &dyn Fn(&[f64]) -> Option<FlexibilityMatrix>| {
-        let mut worst: Option<(f64, &str)> = None;
-        for (points, exact) in loaded_points.iter().zip(&exact) {
-            let part = exact.missing(&has(&points.at)?, points.how);
-            if worst.is_none_or(|(most, _)| part > most) {
-                worst = Some((part, &points.what));
+
+    /// The largest missing part, if that is more than [`MOST_MISSING`].
+    pub(crate) fn missing(&self) -> Option<MissingFlexibility> {
+        let Self { spec: of, reduction, loaded_points } = self;
+        let own = Beam::new(of.clone()).ok()?;
+        let (omega, _) = stable_step::first_frequency(of)?;
+        // At the frequency of the first mode, so that a beam without supports has a flexibility too.
+        let mass = omega * omega;
+        let exact: Vec<FlexibilityMatrix> = loaded_points
+            .iter()
+            .map(|points| {
+                let beam = Beam::new(fine(&own, &points.at)).ok()?;
+                of_mesh(&beam, &points.at, mass)
+            })
+            .collect::<Option<_>>()?;
+        let worst = |has: &dyn Fn(&[f64]) -> Option<FlexibilityMatrix>| {
+            let mut worst: Option<(f64, &str)> = None;
+            for (points, exact) in loaded_points.iter().zip(&exact) {
+                let part = exact.missing(&has(&points.at)?, points.how);
+                if worst.is_none_or(|(most, _)| part > most) {
+                    worst = Some((part, &points.what));
+                }
             }
-        }
-        worst
-    };
-    let of_spec = |spec: BeamSpec, reduction: Option<crate::scene::Reduction>| {
-        let beam = Beam::new(spec).ok()?;
-        match reduction {
-            None => worst(&|at| of_mesh(&beam, at, mass)),
+            worst
+        };
+        let of_beam = |beam: &Beam, reduction: Option<Reduction>| match reduction {
+            None => worst(&|at| of_mesh(beam, at, mass)),
             Some(reduction) => {
-                let basis = reduction.basis(&beam).ok()?;
-                worst(&|at| of_modes(&beam, &basis, basis.len(), at, mass))
+                let basis = reduction.basis(beam).ok()?;
+                worst(&|at| of_modes(beam, &basis, basis.len(), at, mass))
             }
+        };
+        let (part, what) = of_beam(&own, *reduction)?;
+        if part <= MOST_MISSING {
+            return None;
         }
-    };
-    let (part, what) = of_spec(of.spec.clone(), of.reduction)?;
-    if part <= MOST_MISSING {
-        return None;
+        let mesh = |elements: usize| {
+            let mut spec = of.clone();
+            (spec.elements, spec.nodes) = (elements, Vec::new());
+            of_beam(&Beam::new(spec).ok()?, None)
+        };
+        let enough = |found: Option<(f64, &str)>| found.is_some_and(|(part, _)| part <= ENOUGH);
+        let full = of_beam(&own, None)?;
+        let advice = match reduction {
+            Some(_) if full.0 <= MOST_MISSING => {
+                // A basis contains all smaller ones.
+                let basis = Beam::new(of.clone()).ok().and_then(|beam| {
+                    let most = MOST_MODES.min(beam.free_dofs());
+                    Some((Reduction::Modes(most).basis(&beam).ok()?, beam, most))
+                });
+                let count = basis.and_then(|(basis, beam, most)| {
+                    let modes = |count: usize| worst(&|at| of_modes(&beam, &basis, count, at, mass));
+                    doublings(2).take_while(|&count| count <= most).find(|&count| enough(modes(count)))
+                });
+                match count {
+                    Some(count) => format!("use modes = {{ count = {count} }} or more, or leave the number out"),
+                    None => "use model = \"full\"".to_owned(),
+                }
+            }
+            _ => match doublings(2).find(|&elements| enough(mesh(elements))) {
+                Some(elements) => format!("use elements = {elements} or more"),
+                None => "use more elements where it is loaded".to_owned(),
+            },
+        };
+        Some(MissingFlexibility { part, what: what.to_owned(), advice })
     }
-    let mesh = |elements: usize| {
-        let mut spec = of.spec.clone();
-        (spec.elements, spec.nodes) = (elements, Vec::new());
-        of_spec(spec, None)
-    };
-    let enough = |found: Option<(f64, &str)>| found.is_some_and(|(part, _)| part <= ENOUGH);
-    let full = of_spec(of.spec.clone(), None)?;
-    let advice = match of.reduction {
-        Some(_) if full.0 <= MOST_MISSING => {
-            // A basis contains all smaller ones.
-            let basis = Beam::new(of.spec.clone()).ok().and_then(|beam| {
-                let most = MOST_MODES.min(beam.free_dofs());
-                Some((crate::scene::Reduction::Modes(most).basis(&beam).ok()?, beam, most))
-            });
-            let count = basis.and_then(|(basis, beam, most)| {
-                let modes = |count: usize| worst(&|at| of_modes(&beam, &basis, count, at, mass));
-                doublings(2).take_while(|&count| count <= most).find(|&count| enough(modes(count)))
-            });
-            match count {
-                Some(count) => format!("use modes = {{ count = {count} }} or more, or leave the number out"),
-                None => "use model = \"full\"".to_owned(),
-            }
-        }
-        _ => match doublings(2).find(|&elements| enough(mesh(elements))) {
-            Some(elements) => format!("use elements = {elements} or more"),
-            None => "use more elements where it is loaded".to_owned(),
-        },
-    };
-    Some(MissingFlexibility { part, what: what.to_owned(), advice })
 }
 
 /// 2, 4, 6, 8, 10, 20, 40, …
@@ -167,9 +181,9 @@ fn loaded_points(scene: &Scene, number: usize) -> Vec<LoadedPoints> {
 }
 
 /// The beam with a mesh that is practically exact for forces at the given positions.
-fn fine(of: &BeamScene, at: &[f64]) -> BeamSpec {
-    let span = of.spec.span;
-    let mut nodes: Vec<f64> = Beam::new(of.spec.clone()).map(|beam| beam.node_positions().to_vec()).unwrap_or_default();
+pub(crate) fn fine(of: &Beam, at: &[f64]) -> BeamSpec {
+    let span = of.spec().span;
+    let mut nodes = of.node_positions().to_vec();
     let parts = FINE.div_ceil(nodes.len().saturating_sub(1).max(1));
     let between: Vec<f64> = nodes
         .windows(2)
@@ -184,7 +198,7 @@ fn fine(of: &BeamScene, at: &[f64]) -> BeamSpec {
         }
     }
     nodes.sort_by(f64::total_cmp);
-    of.spec.clone().meshed(nodes)
+    of.spec().clone().meshed(nodes)
 }
 
 /// Deflections of points under unit forces at these points, m/N, by rows.
@@ -275,8 +289,13 @@ fn of_modes(
 
 #[cfg(test)]
 mod tests {
-    use super::missing_flexibility;
+    use super::{Flexibility, MissingFlexibility};
     use crate::resolve::Resolved;
+    use crate::scene::Scene;
+
+    fn missing_flexibility(scene: &Scene, number: usize) -> Option<MissingFlexibility> {
+        Flexibility::of(scene, number)?.missing()
+    }
 
     fn resolved(sets: &[(&str, &str)]) -> Resolved {
         const SCENE: &str = "[time]\nend = '0.5 s'\nstep = '100 us'\n[material.a]\ndensity = '2700 kg/m^3'\nyoungs_modulus = '69 GPa'\n\

@@ -33,12 +33,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod beam_measures;
 mod build_diagnostics;
 pub mod decode;
 pub mod deflection;
 mod driven;
 mod flexibility;
 mod ground_profile;
+mod held;
 pub mod keys;
 mod layout;
 mod left_out;
@@ -61,6 +63,7 @@ mod separators;
 mod signal_resolution;
 mod signal_table;
 pub mod simulation;
+mod solve_digits;
 mod solver_pool;
 mod stable_step;
 mod static_start;

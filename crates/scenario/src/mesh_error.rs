@@ -3,6 +3,7 @@
 //! With few elements they differ: a single pinned element has a first frequency 11 % too high, and
 //! 4/5 of the sag under a uniform load.
 
+use crate::flexibility;
 use crate::placement::weight_of;
 use crate::scene::{Reduction, Scene, SupportingBody};
 use std::f64::consts::TAU;
@@ -13,7 +14,7 @@ use teeter_beam::{Beam, BeamSpec, ModalBasis};
 pub struct MeshComparison {
     /// Value of the model.
     pub model: f64,
-    /// Value of the beam, in closed form or from a mesh eight times as fine; `None` if unknown.
+    /// Value of the beam, in closed form or from a finer mesh; `None` if unknown.
     pub beam: Option<f64>,
 }
 
@@ -77,41 +78,66 @@ pub(crate) fn first_frequency(beam: &Beam, basis: Option<&ModalBasis>) -> Option
     Some((MeshComparison { model: model? / TAU, beam: exact.or_else(fine).map(|omega| omega / TAU) }, exact.is_some()))
 }
 
-/// The largest static deflection (m), anywhere along a beam of the scene, under its own weight if
-/// enabled and that of the blocks on it; `None` if there is neither, or no equilibrium.
-pub(crate) fn sag(scene: &Scene, number: usize) -> Option<MeshComparison> {
-    let beam = &scene.beams[number];
-    let mut standing = scene
-        .blocks
-        .iter()
-        .filter_map(|block| weight_of(block, SupportingBody::Beam(number), scene.gravity))
-        .peekable();
-    if !beam.self_weight {
-        standing.peek()?;
+/// What the static deflection of a beam depends on.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Sagging {
+    spec: BeamSpec,
+    reduction: Option<Reduction>,
+    /// Gravity along y (m/s²), if it acts on the beam.
+    own_weight: Option<f64>,
+    /// Positions (m from the left end) and weights (N) of what stands on it.
+    standing: Vec<(f64, f64)>,
+}
+
+impl Sagging {
+    /// That of a beam of the scene under its own weight, if enabled, and that of the blocks on it; `None` if there is neither.
+    pub(crate) fn of(scene: &Scene, number: usize) -> Option<Self> {
+        let beam = &scene.beams[number];
+        let mut standing = scene
+            .blocks
+            .iter()
+            .filter_map(|block| weight_of(block, SupportingBody::Beam(number), scene.gravity))
+            .peekable();
+        if !beam.self_weight {
+            standing.peek()?;
+        }
+        let standing = standing.flatten().map(|(x, force)| (x - beam.position[0], force)).collect();
+        let own_weight = beam.self_weight.then_some(scene.gravity[1]);
+        Some(Self { spec: beam.spec.clone(), reduction: beam.reduction, own_weight, standing })
     }
-    let forces: Vec<(f64, f64)> = standing.flatten().collect();
-    let load = |model: &Beam| {
+
+    /// The largest static deflection (m), anywhere along the beam; `None` if there is no equilibrium.
+    pub(crate) fn largest(&self) -> Option<MeshComparison> {
+        let model = Beam::new(self.spec.clone()).ok()?;
+        let own = self.under_weights(&model, self.reduction)?;
+        let finer = || {
+            let places: Vec<f64> = self.standing.iter().map(|(x, _)| *x).collect();
+            self.under_weights(&Beam::new(flexibility::fine(&model, &places)).ok()?, None)
+        };
+        let is_coarse = model.elements() <= COARSE;
+        Some(MeshComparison { model: own, beam: is_coarse.then(finer).flatten() })
+    }
+
+    fn under_weights(&self, model: &Beam, reduction: Option<Reduction>) -> Option<f64> {
         let mut load = vec![0.0; model.dofs()];
-        if beam.self_weight {
-            model.add_self_weight(scene.gravity[1], &mut load).ok()?;
+        if let Some(gravity) = self.own_weight {
+            model.add_self_weight(gravity, &mut load).ok()?;
         }
-        for (x, force) in &forces {
-            model.add_point_load(x - beam.position[0], -force, &mut load).ok()?;
+        for (x, force) in &self.standing {
+            model.add_point_load(*x, -force, &mut load).ok()?;
         }
-        Some(load)
-    };
-    let of_mesh = |spec: BeamSpec, reduction: Option<Reduction>| {
-        let model = Beam::new(spec).ok()?;
-        let mut load = load(&model)?;
         match reduction {
             None => model.solve_static(&mut load).ok()?,
-            Some(reduction) => load = settled(&reduction.basis(&model).ok()?, &load)?,
+            Some(reduction) => load = settled(&reduction.basis(model).ok()?, &load)?,
         }
         Some(model.deflection_extremes(&load).largest())
-    };
-    let own = of_mesh(beam.spec.clone(), beam.reduction)?;
-    let fine = refined(&beam.spec).and_then(|fine| of_mesh(fine, None));
-    Some(MeshComparison { model: own, beam: fine })
+    }
+}
+
+/// The largest static deflection of a beam of the scene, under its own weight if enabled and that of the blocks on it; `None` if there
+/// is neither, or no equilibrium.
+pub(crate) fn sag(scene: &Scene, number: usize) -> Option<MeshComparison> {
+    Sagging::of(scene, number)?.largest()
 }
 
 /// The equilibrium in a modal basis: mass-orthonormal, so with stiffness ω².

@@ -7,9 +7,9 @@ use crate::required::Removed;
 use crate::resolve::Resolved;
 use crate::scene::{BeamScene, BlockScene, Placement, Scene};
 use crate::simulation::{BeamPlace, Simulation};
-use crate::{stable_step, wording};
+use crate::{solve_digits, stable_step, wording};
 use std::f64::consts::TAU;
-use teeter_beam::{Axial, Beam, MatrixWeights};
+use teeter_beam::Axial;
 use teeter_detect::ContactId;
 use teeter_integrator::coupled_modes;
 
@@ -194,7 +194,7 @@ impl BeamPreview {
             frequency_is_exact: first.is_some_and(|(_, exact)| exact),
             highest_frequency_step: highest.map(|omega| omega * step),
             // A diagonal matrix loses no digits.
-            digits: if full { step_digits(model, theta, step) } else { None },
+            digits: if full { solve_digits::of_step(model, theta, step) } else { None },
             span: spec.span,
             sag: None,
             self_weight: beam.self_weight,
@@ -224,13 +224,6 @@ fn coupled_frequencies(scene: &Scene, simulation: &Simulation) -> Vec<f64> {
     let forces: Vec<_> = start.forces.iter().map(force).collect();
     let modes = coupled_modes(&simulation.model, &simulation.state.q, &forces, COUPLED);
     modes.map_or_else(|_| Vec::new(), |modes| modes.circular_frequencies().map(|omega| omega / TAU).collect())
-}
-
-/// Correct digits of a step's solve.
-pub(crate) fn step_digits(model: &Beam, theta: f64, step: f64) -> Option<f64> {
-    let ht = theta * step;
-    let weights = MatrixWeights { mass: 1.0, damping: ht, stiffness: ht * ht };
-    model.digits(weights).ok().map(|digits| digits.of_solve())
 }
 
 /// σ_y I/c; `None` for a section given directly.

@@ -135,7 +135,7 @@ pub(crate) fn scene_with_warnings(
     read: &mut ReadFile<'_>,
 ) -> Result<(Scene, Vec<Diagnostic>), Diagnostics> {
     scene_of(document, stem, shared, read).map(|(scene, mut warnings)| {
-        warnings.extend(scene_checks::check(&scene, document).warnings);
+        warnings.extend(scene_checks::warnings(&scene, document, &shared.measures));
         (scene, warnings)
     })
 }

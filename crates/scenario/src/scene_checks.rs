@@ -1,15 +1,17 @@
 //! Checks of a scene that can be run but looks wrong: blocks that overturn by themselves, beams
 //! that sag beyond small-deflection theory, steps too coarse for the motion.
 
+use crate::beam_measures::BeamMeasures;
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
-use crate::mesh_error::{self, MeshComparison};
+use crate::mesh_error::MeshComparison;
 use crate::resolve::names::table_of;
 use crate::scene::{BeamScene, BlockScene, ForceScene, Placement, Scene, SupportingBody};
-use crate::{deflection, flexibility, preview, rocking, signal_resolution, stable_step, swing, unused_keys, wording};
+use crate::solve_digits::FewDigits;
+use crate::{deflection, flexibility, rocking, signal_resolution, stable_step, swing, unused_keys, wording};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use teeter_beam::{Axial, Beam, Digits, MatrixWeights};
+use teeter_beam::{Axial, Beam};
 use teeter_integrator::{ImpactLaw, PairLaw};
 use teeter_text::readable::with_digits;
 
@@ -38,80 +40,81 @@ const THICK: f64 = 1.0 / 10.0;
 /// Least number of steps for the shortest time scale of a contact.
 const STEPS_A_MOTION: f64 = 10.0;
 
+/// Checks a scene.
 pub(crate) fn check(scene: &Scene, document: &Document) -> SceneFindings {
-    let mut findings = SceneFindings::default();
+    let measures = BeamMeasures::default();
+    let mut foreseen = Vec::new();
+    // A step too coarse for the motion in contact is also too coarse for its impacts.
+    if step(scene, document).is_none() {
+        foreseen.extend(rocking::coarse(scene, document));
+    }
+    foreseen.extend(swing::coarse(scene, document));
+    SceneFindings { warnings: warnings(scene, document, &measures), foreseen, notes: notes(scene, document, &measures) }
+}
+
+/// The warnings of the checks; `measures` has what earlier scenes have in common with this one.
+pub(crate) fn warnings(scene: &Scene, document: &Document, measures: &BeamMeasures) -> Vec<Diagnostic> {
+    let mut warnings = Vec::new();
     let mut touching = vec![false; scene.blocks.len()];
     scene.contacts.iter().for_each(|contact| touching[contact.block] = true);
     for (block, touches) in scene.blocks.iter().zip(touching) {
-        let incline = incline_under(block, scene);
-        findings.warnings.extend(tilt(block, incline, touches, document));
-        findings.notes.extend(slides(block, incline, scene, document));
+        warnings.extend(tilt(block, incline_under(block, scene), touches, document));
     }
-    findings.warnings.extend(scene.forces.iter().filter_map(|force| without_effect(force, scene, document)));
+    warnings.extend(scene.forces.iter().filter_map(|force| without_effect(force, scene, document)));
     for (number, beam) in scene.beams.iter().enumerate() {
-        findings.warnings.extend(thick(beam, document));
-        findings.warnings.extend(of_model(beam, scene, document));
-        findings.warnings.extend(under_meshed(number, scene, document));
-        let sag = mesh_error::sag(scene, number);
-        match sag.map(|sag| sag.larger()) {
-            Some(largest) if largest > DEEP_SAG * beam.spec.span => {
-                let rule = format!("{}: beyond 1/50 small-deflection theory is unreliable", sagging(beam, sag));
-                let found = document.error(
-                    &format!("beam.{}.thickness", beam.name),
-                    rule,
-                    "use a thicker or shorter beam, or lighter blocks",
-                );
-                findings.warnings.push(found.as_warning());
-            }
-            Some(largest) if largest > NOTABLE_SAG * beam.spec.span && beam.spec.axial != Axial::Held => {
-                let rule = format!(
-                    "{}: linear theory, which neglects the shortening of its axis, has an error of some per cent{}",
-                    sagging(beam, sag),
-                    // A held beam includes its stretching.
-                    if beam.spec.axial == Axial::Free { "; ends held along the axis would stretch it" } else { "" }
-                );
-                let found = document.error(
-                    &format!("beam.{}.thickness", beam.name),
-                    rule,
-                    "no change is needed if that is accurate enough; otherwise use a thicker or shorter beam, or axial = held",
-                );
-                findings.notes.push(found.as_note());
-            }
-            _ => {}
-        }
+        warnings.extend(thick(beam, document));
+        warnings.extend(bent(beam, document));
+        warnings.extend(digits(number, scene, measures, document));
+        warnings.extend(under_meshed(number, scene, measures, document));
+        warnings.extend(sags_deeply(beam, measures.sag(scene, number), document));
     }
-    let (warnings, notes) = signal_resolution::of(scene, document);
-    findings.warnings.extend(warnings);
-    findings.notes.extend(notes);
-    findings.warnings.extend(unused_keys::of(scene, document));
-    // A step too coarse for the motion in contact is also too coarse for its impacts.
-    match step(scene, document) {
-        Some(coarse) => findings.warnings.push(coarse),
-        None => findings.foreseen.extend(rocking::coarse(scene, document)),
-    }
-    findings.foreseen.extend(swing::coarse(scene, document));
-    findings.warnings.extend(loosely_solved(scene, document));
-    // A contact by patterns is for many pairs: the lightest block stays for the shortest time.
-    let mut lightest_of: BTreeMap<&str, (f64, &PairLaw)> = BTreeMap::new();
-    let mut enter = |name, mass: f64, law| {
-        let known = lightest_of.entry(name).or_insert((mass, law));
-        known.0 = known.0.min(mass);
-    };
-    for contact in &scene.contacts {
-        enter(&contact.name, scene.blocks[contact.block].mass(), &contact.law);
-    }
-    for (number, contact) in scene.crowd.iter().flat_map(|crowd| crowd.contacts().iter().enumerate()) {
-        let takes_part = |block: &usize| scene.crowd.as_ref().is_some_and(|of| of.takes_part(*block, Some(number)));
-        let blocks = (0..scene.blocks.len()).filter(takes_part);
-        blocks.for_each(|block| enter(&contact.name, scene.blocks[block].mass(), &contact.law));
-    }
-    let all = lightest_of.into_iter();
-    findings.warnings.extend(all.filter_map(|(name, (mass, law))| resolved_in_time(name, law, mass, scene, document)));
-    findings
+    warnings.extend(signal_resolution::warnings(scene, document));
+    warnings.extend(unused_keys::of(scene, document));
+    warnings.extend(step(scene, document));
+    warnings.extend(loosely_solved(scene, document));
+    warnings.extend(unresolved_contacts(scene, document));
+    warnings
 }
 
-fn sagging(beam: &BeamScene, sag: Option<MeshComparison>) -> String {
-    let Some(sag) = sag else { return String::new() };
+/// What is worth noting of a scene.
+fn notes(scene: &Scene, document: &Document, measures: &BeamMeasures) -> Vec<Diagnostic> {
+    let mut notes = Vec::new();
+    for block in &scene.blocks {
+        notes.extend(slides(block, incline_under(block, scene), scene, document));
+    }
+    for (number, beam) in scene.beams.iter().enumerate() {
+        notes.extend(sags_notably(beam, measures.sag(scene, number), document));
+    }
+    notes.extend(signal_resolution::notes(scene, document));
+    notes
+}
+
+/// Warns of a sag beyond small-deflection theory.
+fn sags_deeply(beam: &BeamScene, sag: Option<MeshComparison>, document: &Document) -> Option<Diagnostic> {
+    let sag = sag.filter(|sag| sag.larger() > DEEP_SAG * beam.spec.span)?;
+    let rule = format!("{}: beyond 1/50 small-deflection theory is unreliable", sagging(beam, sag));
+    let remedy = "use a thicker or shorter beam, or lighter blocks";
+    Some(document.error(&format!("beam.{}.thickness", beam.name), rule, remedy).as_warning())
+}
+
+/// Notes a sag at which the shortening of the axis begins to matter. A held beam includes its stretching.
+fn sags_notably(beam: &BeamScene, sag: Option<MeshComparison>, document: &Document) -> Option<Diagnostic> {
+    let notable = NOTABLE_SAG * beam.spec.span..=DEEP_SAG * beam.spec.span;
+    let sag = sag.filter(|sag| sag.larger() > *notable.start() && sag.larger() <= *notable.end())?;
+    if beam.spec.axial == Axial::Held {
+        return None;
+    }
+    let rule = format!(
+        "{}: linear theory, which neglects the shortening of its axis, has an error of some per cent{}",
+        sagging(beam, sag),
+        if beam.spec.axial == Axial::Free { "; ends held along the axis would stretch it" } else { "" }
+    );
+    let remedy =
+        "no change is needed if that is accurate enough; otherwise use a thicker or shorter beam, or axial = held";
+    Some(document.error(&format!("beam.{}.thickness", beam.name), rule, remedy).as_note())
+}
+
+fn sagging(beam: &BeamScene, sag: MeshComparison) -> String {
     let weight = if beam.self_weight { "its own weight and that of the blocks" } else { "the blocks' weight" };
     let own = sag.beam.unwrap_or(sag.model);
     let part = wording::part_of(own, beam.spec.span);
@@ -124,41 +127,27 @@ fn sagging(beam: &BeamScene, sag: Option<MeshComparison>) -> String {
     }
 }
 
-/// Checks that need the assembled beam.
-fn of_model(beam: &BeamScene, scene: &Scene, document: &Document) -> Vec<Diagnostic> {
-    let Ok(model) = Beam::new(beam.spec.clone()) else { return Vec::new() };
-    let start = deflection::large(&model, &beam.shape).map(|large| {
-        let remedy = "start from a smaller shape";
-        document.error(&format!("beam.{}.start", beam.name), format!("the initial shape is not small: {large}"), remedy)
-    });
-    start.into_iter().chain(digits(beam, &model, scene, document)).map(Diagnostic::as_warning).collect()
+/// Warns of a large initial shape.
+fn bent(beam: &BeamScene, document: &Document) -> Option<Diagnostic> {
+    if beam.shape.is_empty() {
+        return None;
+    }
+    let large = deflection::large(&Beam::new(beam.spec.clone()).ok()?, &beam.shape)?;
+    let (path, rule) = (format!("beam.{}.start", beam.name), format!("the initial shape is not small: {large}"));
+    Some(document.error(&path, rule, "start from a smaller shape").as_warning())
 }
 
 /// With up to this many elements, the mesh is not the cause of lost digits.
 const COARSE: usize = 100;
 
-/// Warns if solves leave few digits. The solve of a static start is refined, and loses digits
-/// later.
-fn digits(beam: &BeamScene, model: &Beam, scene: &Scene, document: &Document) -> Option<Diagnostic> {
-    // A step of a beam in modes solves for each separately.
-    let full = beam.reduction.is_none();
-    let step = full.then(|| preview::step_digits(model, scene.time.theta, scene.time.step)).flatten();
-    let step = step.map(|digits| (digits, "a step's solve"));
-    let statics = || {
-        // What only blocks hold up is solved for with them, not with the beam's stiffness alone: that is singular, and what its
-        // factor is by rounding tells nothing.
-        if model.rigid_motion().is_some() {
-            return None;
-        }
-        let weights = MatrixWeights { mass: 0.0, damping: 0.0, stiffness: 1.0 };
-        model.digits(weights).ok().map(|digits| (digits.of_refined(), "the static start"))
-    };
-    let both = step.into_iter().chain(beam.static_start.then(statics).flatten());
-    let (correct, what) = both.min_by(|(a, _), (b, _)| a.total_cmp(b)).filter(|(correct, _)| *correct < Digits::FEW)?;
+/// Warns if solves leave few digits.
+fn digits(number: usize, scene: &Scene, measures: &BeamMeasures, document: &Document) -> Option<Diagnostic> {
+    let beam = &scene.beams[number];
+    let FewDigits { correct, what, elements } = measures.few_digits(scene, number)?;
     let path = |key: &str| format!("beam.{}.{key}", beam.name);
     let key = if document.has(&path("nodes")) { "nodes" } else { "elements" };
     let rule = format!("only {correct:.1} digits of {what} are correct because of rounding");
-    let remedy = if model.elements() > COARSE {
+    let remedy = if elements > COARSE {
         "use a coarser mesh: 20 to 100 elements are more accurate than the model"
     } else {
         "use elements of more equal length, and less different stiffnesses of beam and supports"
@@ -183,8 +172,8 @@ fn thick(beam: &BeamScene, document: &Document) -> Option<Diagnostic> {
 }
 
 /// Warns of a mesh, or modes, that lack flexibility where the beam is loaded.
-fn under_meshed(number: usize, scene: &Scene, document: &Document) -> Option<Diagnostic> {
-    let lack = flexibility::missing_flexibility(scene, number)?;
+fn under_meshed(number: usize, scene: &Scene, measures: &BeamMeasures, document: &Document) -> Option<Diagnostic> {
+    let lack = measures.missing_flexibility(scene, number)?;
     let beam = &scene.beams[number];
     let path = |key: &str| format!("beam.{}.{key}", beam.name);
     let key = match beam.reduction {
@@ -293,6 +282,26 @@ fn loosely_solved(scene: &Scene, document: &Document) -> Option<Diagnostic> {
 
 /// Least number of steps for the duration of a compliant contact.
 const STEPS_A_CONTACT: f64 = 20.0;
+
+/// Warns of compliant contacts that the step doesn't resolve.
+fn unresolved_contacts(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
+    // A contact by patterns is for many pairs: the lightest block stays for the shortest time.
+    let mut lightest_of: BTreeMap<&str, (f64, &PairLaw)> = BTreeMap::new();
+    let mut enter = |name, mass: f64, law| {
+        let known = lightest_of.entry(name).or_insert((mass, law));
+        known.0 = known.0.min(mass);
+    };
+    for contact in &scene.contacts {
+        enter(&contact.name, scene.blocks[contact.block].mass(), &contact.law);
+    }
+    for (number, contact) in scene.crowd.iter().flat_map(|crowd| crowd.contacts().iter().enumerate()) {
+        let takes_part = |block: &usize| scene.crowd.as_ref().is_some_and(|of| of.takes_part(*block, Some(number)));
+        let blocks = (0..scene.blocks.len()).filter(takes_part);
+        blocks.for_each(|block| enter(&contact.name, scene.blocks[block].mass(), &contact.law));
+    }
+    let all = lightest_of.into_iter();
+    all.filter_map(|(name, (mass, law))| resolved_in_time(name, law, mass, scene, document)).collect()
+}
 
 /// Warns of a compliant contact that the step doesn't resolve. On a spring k a mass m stays for
 /// half a period, π√(m/k); for a force k δⁿ the spring is linearised at the depth at which the

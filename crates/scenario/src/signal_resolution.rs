@@ -37,11 +37,11 @@ const FAR_TOO_LONG: f64 = 1000.0;
 /// Largest number of signals listed in a message; the rest is counted.
 const LISTED: usize = 20;
 
-/// Warnings and notes.
-pub(crate) fn of(scene: &Scene, document: &Document) -> (Vec<Diagnostic>, Vec<Diagnostic>) {
+/// Warnings.
+pub(crate) fn warnings(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let used = used(scene, document);
-    let (mut warnings, mut notes) = (Vec::new(), Vec::new());
-    let end = scene.time.steps() as f64 * scene.time.step;
+    let mut warnings = Vec::new();
+    let end = end(scene);
     let mut unused = Vec::new();
     for signal in &scene.signals {
         let Some(used) = used.get(signal.name.as_str()) else {
@@ -69,20 +69,34 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> (Vec<Diagnostic>, Vec<Di
                 .table()
                 .and_then(|table| rows(&format!("{path}.file"), table, used.in_the_mean(), scene, document)),
         });
-        notes.extend(too_long(signal, end, document));
     }
     warnings.extend(nothing_uses(&unused, document));
     for record in scene.records().take(LISTED) {
-        let (worrying, worth_noting) = record_checks::of(record, end, document);
-        warnings.extend(worrying);
-        notes.extend(worth_noting);
+        warnings.extend(record_checks::warning(record, end, document));
+        if record.record.dt() >= scene.time.step {
+            continue;
+        }
         let in_the_mean = Used { motion: true, load: false }.in_the_mean();
         warnings.extend(rows(&format!("{}.record", record.path), record.table(), in_the_mean, scene, document));
     }
     warnings.extend(turns(scene, document));
     warnings.extend(rises(scene, document));
     warnings.extend(fast_starts(scene, document));
-    (warnings, notes)
+    warnings
+}
+
+/// Notes.
+pub(crate) fn notes(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
+    let (used, end) = (used(scene, document), end(scene));
+    let is_heard = |signal: &&SignalScene| used.contains_key(signal.name.as_str()) && !is_silent(&signal.history, end);
+    let signals = scene.signals.iter().filter(is_heard).filter_map(|signal| too_long(signal, end, document));
+    let records = scene.records().take(LISTED).filter_map(|record| record_checks::note(record, end, document));
+    signals.chain(records).collect()
+}
+
+/// The end of the run, s.
+fn end(scene: &Scene) -> f64 {
+    scene.time.steps() as f64 * scene.time.step
 }
 
 /// What a signal multiplies.
@@ -419,14 +433,18 @@ fn fast_start(axis: &AxisScene, end: f64) -> Option<f64> {
     }
     let motion = axis.motion();
     let velocity = |k: u32| motion.velocity(end * f64::from(k) / f64::from(LOOKS));
+    let start = velocity(0);
+    if start == 0.0 {
+        return None;
+    }
     let fastest = (0..=LOOKS).map(|k| velocity(k).abs()).fold(0.0, f64::max);
-    Some(velocity(0)).filter(|start| start.abs() > STARTS_FAST * fastest)
+    Some(start).filter(|start| start.abs() > STARTS_FAST * fastest)
 }
 
 /// Warns of beams whose supports don't start from rest, and of blocks at rest on ground that
 /// doesn't.
 fn fast_starts(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
-    let end = scene.time.steps() as f64 * scene.time.step;
+    let end = end(scene);
     let beams = scene.beams.iter().filter_map(|beam| {
         let start = fast_start(beam.motion.0[1].as_ref()?, end)?;
         let rule = format!(

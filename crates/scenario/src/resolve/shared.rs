@@ -2,9 +2,11 @@
 //! beams with their factors and equilibria.
 
 use super::records::Scaling;
+use crate::beam_measures::BeamMeasures;
 use crate::diagnostic::Diagnostics;
 use crate::document::Document;
 use crate::driven::SharedBeam;
+use crate::held::Held;
 use crate::scene::{AngleUnit, BeamScene, LengthUnit, MotionScene, RecordScene};
 use crate::simulation::BuildError;
 use crate::solver_pool::SolverPool;
@@ -14,10 +16,6 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use teeter_contact::ContactSolver;
 use teeter_integrator::Table;
 use teeter_record::Record;
-
-/// Accelerations that are held at most, some 30 MB: of a study in which every case cuts its record differently, all but a few
-/// would be held in vain.
-const MOST_VALUES: usize = 4_000_000;
 
 /// Records held at most, as they are searched one by one.
 const MOST_RECORDS: usize = 256;
@@ -39,6 +37,8 @@ pub struct SharedParts {
     /// By the texts of their specification and reduction.
     beams: Mutex<Held<String, SharedBeam>>,
     settled: Mutex<Held<String, Settled>>,
+    /// Of beams, for warnings.
+    pub(super) measures: BeamMeasures,
     units: OnceLock<(Option<LengthUnit>, Option<AngleUnit>)>,
     solvers: SolverPool,
     /// By the texts of the paths and values in their tables.
@@ -125,7 +125,7 @@ impl SharedParts {
 
     /// The record as corrected, from earlier or made now.
     pub(super) fn corrected(&self, keys: &RecordKeys, make: impl FnOnce() -> Option<Record>) -> Option<Arc<Record>> {
-        Held::find_or(&self.corrected, keys, make, Record::len)
+        Held::find_or(&self.corrected, keys, MOST_RECORDS, make, Record::len)
     }
 
     /// The record as used, from earlier or made now.
@@ -134,13 +134,13 @@ impl SharedParts {
         keys: &(RecordKeys, Placed),
         make: impl FnOnce() -> Option<RecordScene>,
     ) -> Option<Arc<RecordScene>> {
-        Held::find_or(&self.used, keys, make, |of| 4 * of.record.len())
+        Held::find_or(&self.used, keys, MOST_RECORDS, make, |of| 4 * of.record.len())
     }
 
     /// The table of a signal, from earlier or read now.
     pub(super) fn table(&self, keys: &TableKeys, make: impl FnOnce() -> Option<Table>) -> Option<Arc<Table>> {
         let count = |_: &Table| _ = self.counts.tables.fetch_add(1, Ordering::Relaxed);
-        Held::find_or(&self.tables, keys, || make().inspect(count), |of| 4 * of.rows().count())
+        Held::find_or(&self.tables, keys, MOST_RECORDS, || make().inspect(count), |of| 4 * of.rows().count())
     }
 
     /// A contact solver with this name; `None` if there is none.
@@ -192,82 +192,8 @@ impl SharedParts {
         SharedCounts {
             beams: of(&self.counts.beams),
             equilibria: of(&self.counts.settled),
-            factors: beams.entries.iter().map(|(_, beam)| beam.factors.made()).sum(),
+            factors: beams.values().map(|beam| beam.factors.made()).sum(),
             tables: of(&self.counts.tables),
-        }
-    }
-}
-
-/// Values by their keys.
-#[derive(Debug)]
-struct Held<K, V> {
-    entries: Vec<(K, Arc<V>)>,
-    /// The sum of their sizes.
-    size: usize,
-}
-
-impl<K, V> Default for Held<K, V> {
-    fn default() -> Self {
-        Self { entries: Vec::new(), size: 0 }
-    }
-}
-
-impl<K: PartialEq + Clone, V> Held<K, V> {
-    /// Not locked while it is made: two threads may make the same value.
-    fn find_or(
-        held: &Mutex<Self>,
-        key: &K,
-        make: impl FnOnce() -> Option<V>,
-        size: impl Fn(&V) -> usize,
-    ) -> Option<Arc<V>> {
-        Self::try_find_or(held, key.clone(), MOST_RECORDS, || make().ok_or(()), size).ok()
-    }
-
-    /// The same for what may fail, and with the most entries given.
-    fn try_find_or<E>(
-        held: &Mutex<Self>,
-        key: K,
-        most: usize,
-        make: impl FnOnce() -> Result<V, E>,
-        size: impl Fn(&V) -> usize,
-    ) -> Result<Arc<V>, E> {
-        let lock = || held.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, value)) = lock().entries.iter().find(|(known, _)| *known == key) {
-            return Ok(Arc::clone(value));
-        }
-        let value = Arc::new(make()?);
-        let size = size(&value);
-        let mut held = lock();
-        if held.size + size > MOST_VALUES || held.entries.len() == most {
-            *held = Self::default();
-        }
-        held.size += size;
-        held.entries.push((key, Arc::clone(&value)));
-        Ok(value)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_value_is_made_once_and_few_are_held() {
-        let held = Mutex::new(Held::default());
-        let mut made = 0;
-        for key in [1, 2, 1, 2, 1] {
-            let value = Held::find_or(&held, &key, || Some(10 * key).inspect(|_| made += 1), |_| 1);
-            assert_eq!(value.as_deref(), Some(&(10 * key)));
-        }
-        assert_eq!(made, 2);
-        assert_eq!(Held::find_or(&held, &3, || None, |_| 1), None, "what can't be made isn't held");
-        for key in 0..10 * MOST_RECORDS {
-            Held::find_or(&held, &key, || Some(key), |_| 1);
-            assert!(held.lock().unwrap().entries.len() <= MOST_RECORDS);
-        }
-        for key in 0..10 {
-            Held::find_or(&held, &key, || Some(key), |_| MOST_VALUES / 3);
-            assert!(held.lock().unwrap().size <= MOST_VALUES);
         }
     }
 }

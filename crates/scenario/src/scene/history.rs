@@ -154,6 +154,9 @@ pub struct RecordScene {
     pub file: String,
     /// The record as used: cut, corrected and scaled.
     pub record: teeter_record::Record,
+    /// The velocity with which it ends, and the largest one, m/s.
+    pub(crate) last_velocity: f64,
+    pub(crate) largest_velocity: f64,
     /// Its accelerations over time, m/s²: linear between the values, and falling to 0 within a step
     /// after the last one.
     table: Arc<Table>,
@@ -172,7 +175,9 @@ impl RecordScene {
         }
         let times = (0..values.len()).map(|k| record.time(k)).collect();
         let table = Arc::new(Table::new(times, values)?);
-        Ok(Self { path: path.to_owned(), file: file.to_owned(), record, table })
+        let last_velocity = record.motion().0.last().copied().unwrap_or(0.0);
+        let largest_velocity = record.velocity_peak().size;
+        Ok(Self { path: path.to_owned(), file: file.to_owned(), record, last_velocity, largest_velocity, table })
     }
 
     /// Its spectral acceleration at a natural period (s), for 5 % damping, m/s²; `None` if it can't be
