@@ -70,6 +70,9 @@ fn row_height(bands: &[Band]) -> f64 {
     if named_beside(bands) { ROW } else { ROW + NAME }
 }
 
+/// Length of a tick at the top, px.
+const TICK: f64 = 5.0;
+
 impl Panel {
     /// A panel with this y axis.
     #[must_use]
@@ -243,9 +246,12 @@ impl Panel {
 
     fn draw_plot(&self, svg: &mut String, frame: &Frame, id: &str, theme: Theme, y: &Axis, series: &[Series]) {
         let (top, height, width) = (frame.top, frame.height, frame.width());
-        let py = |value: f64| top + y.below_high(value, height);
+        // Curves stay below the ticks.
+        let room = if self.ticks_at.is_empty() { 0.0 } else { TICK + 2.0 };
+        let inner = Frame { top: top + room, height: height - room, across: frame.across, x: frame.x };
+        let py = |value: f64| inner.top + y.below_high(value, inner.height);
         if let Some((below, _)) = &self.shaded {
-            let depth = (height - y.below_high(*below, height)).clamp(0.0, height);
+            let depth = (top + height - py(*below)).clamp(0.0, height);
             let _ = writeln!(
                 svg,
                 "<rect x=\"{LEFT}\" y=\"{:.2}\" width=\"{width}\" height=\"{depth:.2}\" fill=\"{}\"/>",
@@ -253,7 +259,7 @@ impl Panel {
                 Colour::Shade.value(theme)
             );
         }
-        let title = draw_grid(svg, frame, theme, y);
+        let title = draw_grid(svg, &inner, theme, y);
         let _ = writeln!(
             svg,
             "<clipPath id=\"{id}\"><rect x=\"{LEFT}\" y=\"{top:.2}\" width=\"{width}\" height=\"{height}\"/>\
@@ -284,7 +290,7 @@ impl Panel {
             let path = cells_path(cells.points(), |x| frame.px(x), py);
             let _ = writeln!(svg, "<path d=\"{path}\" fill=\"{colour}\" stroke=\"none\"/>");
         }
-        Self::draw_marks(svg, frame, theme, y, series, true);
+        Self::draw_marks(svg, &inner, theme, y, series, true);
         for (k, line) in series.iter().enumerate().filter(|(_, series)| series.drawn == Drawn::Line) {
             let path = line_path(line.points(), |x| frame.px(x), py);
             let stroke = stroke(line.number_at(k), line.dash, theme);
@@ -292,13 +298,13 @@ impl Panel {
             let _ = writeln!(svg, "<path d=\"{path}\" {stroke} {weight}/>");
         }
         svg.push_str("</g>\n");
-        Self::draw_marks(svg, frame, theme, y, series, false);
-        self.draw_labels(svg, frame, theme, y, series);
+        Self::draw_marks(svg, &inner, theme, y, series, false);
+        self.draw_labels(svg, &inner, theme, y, series);
         let ticks = self.ticks_at.iter().filter(|(x, _)| frame.x.contains(*x));
         let ticks: String = ticks
             .map(|&(x, part)| match part {
-                1.0 => format!("M{:.2} {top:.2}v5", frame.px(x)),
-                part => format!("M{:.2} {top:.2}v{:.1}", frame.px(x), 5.0 * part),
+                1.0 => format!("M{:.2} {top:.2}v{TICK}", frame.px(x)),
+                part => format!("M{:.2} {top:.2}v{:.1}", frame.px(x), TICK * part),
             })
             .collect();
         let ink = Colour::Ink.value(theme);

@@ -245,7 +245,10 @@ const plots = (() => {
     if (panel.bands) {
       body = bands(panel, size, clip);
     } else {
-      const [low, high] = range(panel);
+      const [low, most] = range(panel);
+      // Curves stay below the ticks of impacts.
+      const room = impacts ? 5 : 0;
+      const high = most + (room / (bottom - margin.top - room)) * (most - low);
       const y = (value) => margin.top + ((high - value) / (high - low)) * (bottom - margin.top);
       const yTicks = ticks(low, high, Math.floor((bottom - margin.top) / 28));
       if (panel.guideKey) panel.guideKey.hidden = !panel.guides.some((at) => at >= low && at <= high);

@@ -1,7 +1,9 @@
 //! A coordinate and its velocity over time for phase portraits: thinned by shape, not by count, in bounded memory.
 //!
 //! Of all steps those are kept between which both go along straight lines in time, to [`TOLERANCE`] of how far each of them goes in
-//! the run. So a portrait is as smooth as the motion wherever that turns or jumps, and a long flight or rest is two points.
+//! the run. So a portrait is as smooth as the motion wherever that turns or jumps, and a long flight or rest is two points. A run of
+//! hundreds of impacts has more turns than points are kept: between them it is drawn by the cubics that a coordinate and its velocity
+//! at both ends determine.
 
 use serde::{Deserialize, Serialize};
 
@@ -112,6 +114,12 @@ impl Orbit {
 
     /// The curve, in so many points or fewer, three at least.
     pub(crate) fn points(&self, most: usize) -> Vec<Point> {
+        let (points, tolerance, extents) = self.corners(most);
+        if tolerance <= TOLERANCE { points } else { rounded(&points, tolerance, extents, most) }
+    }
+
+    /// The points that are kept, to which tolerance, and how far they go.
+    fn corners(&self, most: usize) -> (Vec<Point>, f64, [f64; 2]) {
         // Known only now: how far it went, without rounding up.
         let mut exact = self.clone();
         for k in 0..2 {
@@ -125,7 +133,62 @@ impl Orbit {
             tolerance *= 1.5;
             thinned = exact.thinned(tolerance);
         }
-        thinned.points.into_iter().chain(thinned.last).collect()
+        (thinned.points.into_iter().chain(thinned.last).collect(), tolerance, exact.extents)
+    }
+}
+
+/// Most pieces between two points.
+const PIECES: f64 = 8.0;
+
+/// The points with more between them where the motion turns, so many in all or fewer: those of cubics of the coordinate over time,
+/// which have its velocities at both ends. Where both go along straight lines in time but for `tolerance`, that is a smooth motion; a
+/// jump isn't, and stays.
+fn rounded(points: &[Point], tolerance: f64, extents: [f64; 2], most: usize) -> Vec<Point> {
+    let arcs = || points.iter().zip(points.iter().skip(1)).map(|(a, b)| Arc::between(*a, *b));
+    // To how many pieces, if chords may be so far off.
+    let pieces = |arc: &Arc, off: f64| {
+        let smooth = arc.beyond.abs() <= 2.0 * tolerance * extents[1];
+        if smooth { (arc.off(extents) / off).sqrt().ceil().clamp(1.0, PIECES) } else { 1.0 }
+    };
+    let mut off = TOLERANCE;
+    while off < tolerance && arcs().map(|arc| pieces(&arc, off)).sum::<f64>() >= most as f64 {
+        off *= 1.2;
+    }
+    let within = |arc: Arc| {
+        let pieces = pieces(&arc, off);
+        (1..pieces as usize).map(move |k| arc.at(k as f64 / pieces))
+    };
+    let ends = points.iter().skip(1);
+    points.iter().take(1).copied().chain(arcs().zip(ends).flat_map(|(arc, end)| within(arc).chain([*end]))).collect()
+}
+
+/// A motion between two points: the cubic over time with their coordinates and velocities.
+struct Arc {
+    start: Point,
+    /// How long it takes.
+    h: f64,
+    /// How much the velocity changes.
+    dv: f64,
+    /// How much faster it is in the mean than the mean of both velocities.
+    beyond: f64,
+}
+
+impl Arc {
+    fn between(a: Point, b: Point) -> Self {
+        let h = b[0] - a[0];
+        Self { start: a, h, dv: b[2] - a[2], beyond: (b[1] - a[1]) / h - 0.5 * (a[2] + b[2]) }
+    }
+
+    /// The distance from the chord, in parts of the extents.
+    fn off(&self, extents: [f64; 2]) -> f64 {
+        (1.5 * self.beyond.abs() / extents[1]).max(0.125 * (self.h * self.dv).abs() / extents[0])
+    }
+
+    /// The point after a part of the time.
+    fn at(&self, part: f64) -> Point {
+        let Self { start: [t, x, v], h, dv, beyond } = *self;
+        let mean = v + 0.5 * dv * part + beyond * part * (3.0 - 2.0 * part);
+        [t + part * h, x + h * part * mean, v + dv * part + 6.0 * beyond * part * (1.0 - part)]
     }
 }
 
@@ -175,6 +238,24 @@ mod tests {
         assert!(points.contains(&[49.0, 49.0, 1.0]) && points.contains(&[50.0, 50.0, 0.0]), "{points:?}");
         assert!(points.len() <= 5, "{points:?}");
         assert_eq!(orbit(1000, 1.0, |_| [3.0, 0.0]).points(usize::MAX).len(), 2);
+    }
+
+    /// Hops of a block that turns to and fro, lower from one to the next: more arcs than points are kept for.
+    #[test]
+    fn hundreds_of_impacts_are_joined_by_arcs() {
+        const HOPS: f64 = 600.0;
+        let hop = |t: f64| {
+            let (number, s) = (t.floor(), t.fract());
+            let v = 1.0 - 0.9 * number / HOPS;
+            [v * s * (1.0 - s), v * (1.0 - 2.0 * s)]
+        };
+        let (steps, dt) = (600_000 - 1, 1e-3);
+        let orbit = orbit(steps, dt, hop);
+        let (corners, tolerance, _) = orbit.corners(8000);
+        let points = orbit.points(8000);
+        assert!(tolerance > TOLERANCE && points.len() <= 8000, "{}", points.len());
+        let [chords, arcs] = [&corners, &points].map(|points| error(points, steps, dt, hop, [0.25, 2.0]));
+        assert!(arcs < 0.3 * chords, "{arcs} {chords} {tolerance} {} {}", corners.len(), points.len());
     }
 
     #[test]

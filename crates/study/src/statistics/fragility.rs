@@ -1,5 +1,6 @@
 //! Lognormal fragility curves by maximum likelihood.
 
+use super::chi_squared::chi_squared_tail;
 use super::normal::{hazard, log_probability, normal_probability};
 
 /// What happened at an intensity.
@@ -173,6 +174,96 @@ impl LognormalFit {
     pub fn probability(&self, intensity: f64) -> f64 {
         normal_probability((intensity / self.median).ln() / self.beta)
     }
+
+    /// How well the curve describes observations: χ² of the numbers of events in groups of neighbouring intensities, in each of which
+    /// at least five events and as many cases without one are expected (D. W. Hosmer, S. Lemeshow, doi 10.1080/03610928008827941).
+    /// `None` with fewer than three such groups.
+    #[must_use]
+    pub fn misfit(&self, observations: &[Observation]) -> Option<Misfit> {
+        let mut sorted = observations.to_vec();
+        sorted.sort_by(|a, b| a.intensity.total_cmp(&b.intensity));
+        let mut groups: Vec<ObservedGroup> = Vec::new();
+        let mut open = ObservedGroup::default();
+        for same in sorted.chunk_by(|a, b| a.intensity == b.intensity) {
+            open.take(same, self.probability(same[0].intensity));
+            if open.is_large() {
+                groups.push(std::mem::take(&mut open));
+            }
+        }
+        // What is left at the end belongs to the last group.
+        if let Some(last) = groups.last_mut() {
+            last.join(&open);
+        }
+        let degrees = groups.len().checked_sub(2).filter(|degrees| *degrees > 0)?;
+        let square = |group: &ObservedGroup| (group.events as f64 - group.expected).powi(2) / group.variance;
+        let worst = groups.iter().max_by(|a, b| square(a).total_cmp(&square(b)))?;
+        Some(Misfit {
+            p: chi_squared_tail(groups.iter().map(square).sum(), degrees),
+            range: worst.range,
+            cases: worst.cases,
+            events: worst.events,
+            expected: worst.expected,
+        })
+    }
+}
+
+/// How badly a curve describes observations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Misfit {
+    /// The probability of a χ² as large or larger if the curve were right.
+    pub p: f64,
+    /// The intensities of the group that differs most.
+    pub range: [f64; 2],
+    /// Its cases.
+    pub cases: usize,
+    /// Its events.
+    pub events: usize,
+    /// How many the curve lets one expect.
+    pub expected: f64,
+}
+
+/// Least number of events, and of cases without one, to be expected in a group.
+const LEAST_EXPECTED: f64 = 5.0;
+
+#[derive(Default)]
+struct ObservedGroup {
+    range: [f64; 2],
+    cases: usize,
+    events: usize,
+    expected: f64,
+    variance: f64,
+}
+
+impl ObservedGroup {
+    /// Takes cases of one intensity in.
+    fn take(&mut self, same: &[Observation], probability: f64) {
+        let cases = same.len();
+        self.join(&Self {
+            range: [same[0].intensity; 2],
+            cases,
+            events: same.iter().filter(|seen| seen.event).count(),
+            expected: cases as f64 * probability,
+            variance: cases as f64 * probability * (1.0 - probability),
+        });
+    }
+
+    fn join(&mut self, other: &Self) {
+        if self.cases == 0 {
+            self.range[0] = other.range[0];
+        }
+        if other.cases > 0 {
+            self.range[1] = other.range[1];
+        }
+        self.cases += other.cases;
+        self.events += other.events;
+        self.expected += other.expected;
+        self.variance += other.variance;
+    }
+
+    fn is_large(&self) -> bool {
+        self.expected >= LEAST_EXPECTED && self.cases as f64 - self.expected >= LEAST_EXPECTED
+    }
 }
 
 #[cfg(test)]
@@ -205,6 +296,24 @@ mod tests {
         let a = LognormalFit::of(&stripes(&rows)).unwrap();
         let b = LognormalFit::of(&stripes(&rows.map(|(x, n, k)| (9.81 * x, n, k)))).unwrap();
         assert!((b.median / a.median / 9.81 - 1.0).abs() < 1e-12 && (b.beta / a.beta - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_curve_that_does_not_describe_the_cases_is_told() {
+        // A likelihood of events by a lognormal curve, to whole numbers of cases.
+        let good = [(0.1, 100, 1), (0.2, 100, 16), (0.3, 100, 38), (0.4, 100, 58), (0.6, 100, 82), (0.9, 100, 95)];
+        let seen = stripes(&good);
+        let fit = LognormalFit::of(&seen).unwrap().misfit(&seen).unwrap();
+        assert!(fit.p > 0.5, "{fit:?}");
+        // Half of the cases whatever the intensity, up to a threshold.
+        let bad = [(0.1, 100, 50), (0.2, 100, 50), (0.3, 100, 50), (0.4, 100, 50), (0.6, 100, 100), (0.9, 100, 100)];
+        let seen = stripes(&bad);
+        let fit = LognormalFit::of(&seen).unwrap().misfit(&seen).unwrap();
+        assert!(fit.p < 1e-6 && fit.cases >= 100, "{fit:?}");
+        assert_eq!(
+            LognormalFit { median: 1.0, beta: 0.5, log_likelihood: 0.0 }.misfit(&stripes(&[(1.0, 20, 10)])),
+            None
+        );
     }
 
     #[test]

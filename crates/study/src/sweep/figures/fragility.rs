@@ -30,6 +30,8 @@ const MOST_INTENSITIES: usize = 4;
 const CONFIDENCE: f64 = 0.95;
 const RESAMPLES: u64 = 1000;
 const SEED: u64 = 20_150_521;
+/// A curve with a smaller p is said not to describe the cases.
+const DOUBTFUL: f64 = 0.01;
 /// Points of a curve in its table and figure.
 const POINTS: usize = 121;
 /// What is drawn of each study, beside its name.
@@ -338,6 +340,7 @@ impl Parts {
                     events.to_string(),
                     groups.to_string(),
                 ]);
+                self.doubted(&study.about(label), fit, curve);
                 if failed > 0 {
                     self.notes.push(format!(
                         "{}: {failed} of {RESAMPLES} resamples have no fit and are left out of the intervals, which \
@@ -358,6 +361,21 @@ impl Parts {
                 self.notes.push(note);
             }
         }
+    }
+
+    /// Tells of a curve that doesn't describe the cases.
+    fn doubted(&mut self, about: &str, fit: &LognormalFit, curve: &Curve) {
+        let Some(misfit) = fit.misfit(&curve.seen.observations).filter(|misfit| misfit.p < DOUBTFUL) else { return };
+        let [low, high] = misfit.range.map(digits);
+        let place = if low == high { format!("at {low}") } else { format!("from {low} to {high}") };
+        self.notes.push(format!(
+            "{about}: the lognormal curve doesn't describe these cases: {place} the event comes in {} of {}, where the curve lets one expect \
+             {:.1} (χ², p = {}). Use the shares observed (fragility_data.csv); median, dispersion and the ends of the curve rest on its form.",
+            misfit.events,
+            misfit.cases,
+            misfit.expected,
+            digits(misfit.p)
+        ));
     }
 
     /// The ratios of medians to that of the first study.
