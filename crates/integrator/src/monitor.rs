@@ -22,6 +22,9 @@ pub struct Peak {
 /// A smaller excursion is rounding, not rocking; rad.
 const STILL: f64 = 1e-12;
 
+/// An angle that is no more than this part of its largest has turned.
+const TURNED: f64 = 0.99;
+
 /// Most crossings that a monitor lists, and as many peaks: some 2 MB, however long the run is.
 pub const LISTED_CROSSINGS: usize = 100_000;
 
@@ -39,6 +42,9 @@ pub const LISTED_CROSSINGS: usize = 100_000;
 /// assert_eq!(times, [1.5, 3.75]);
 /// let peaks: Vec<f64> = monitor.peaks().iter().map(|p| p.phi).collect();
 /// assert_eq!(peaks, [0.2, -0.3]); // the unfinished one at the end is none
+/// assert_eq!(monitor.turned(), None);
+/// monitor.enter(5.0, 0.05);
+/// assert_eq!(monitor.turned().map(|peak| peak.phi), Some(0.1));
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -123,6 +129,15 @@ impl RockingMonitor {
     #[must_use]
     pub fn extreme(&self) -> Peak {
         self.extreme
+    }
+
+    /// The largest |φ| since the last crossing, if the angle has turned there: it is back by a hundredth of it, which ringing beside
+    /// a peak isn't.
+    #[must_use]
+    pub fn turned(&self) -> Option<Peak> {
+        let (_, phi) = self.last;
+        let peak = self.extreme;
+        (peak.phi.abs() > self.least && phi.abs() <= TURNED * peak.phi.abs()).then_some(peak)
     }
 
     /// The crossings so far, the first [`LISTED_CROSSINGS`] of them.

@@ -110,7 +110,8 @@ pub struct BodyVerdict {
     pub lies_on: Option<Side>,
     /// How far it slid along what carries it, from the start to the end, m; to the right positive.
     pub slid: Option<f64>,
-    /// The farthest that it was from where it stood, of one that slid back from there, m; to the right positive.
+    /// The farthest that it was from where it stood, of one that slid back from there, m; to the right positive. Of one that has then
+    /// slid farther past its start, where it turned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub farthest: Option<f64>,
     /// How fast it moves at the end relative to what carries it, m/s; of one that slides on.
@@ -540,7 +541,9 @@ impl Seen {
         let has_slid = slid.is_some_and(|slid| slid.abs() >= SLID * base);
         let rocked = self.part.is_some_and(|part| part >= ROCKED);
         let peak = rocking.and_then(|monitor| {
-            monitor.peaks().last().copied().or_else(|| Some(monitor.extreme()).filter(|peak| peak.phi != 0.0))
+            let of_crossings = || monitor.peaks().last().copied();
+            let largest = || Some(monitor.extreme()).filter(|peak| peak.phi != 0.0);
+            monitor.turned().or_else(of_crossings).or_else(largest)
         });
         let (what, t, way) = match (overturned, self.out, self.sunk, rests) {
             (Some((t, way)), ..) => (Fate::Overturned, Some(t), Some(way)),
@@ -600,7 +603,7 @@ impl Seen {
             tumbled: tumbled.filter(|turn| turn.abs() >= TUMBLED && what != Fate::Overturned),
             on_its_way: on_its_way.map(|_| tilt),
             going: (what == Fate::Moves && self.still.is_none())
-                .then(|| self.going(watched, layout, number, state))
+                .then(|| self.going(watched, layout, number, state).or_else(|| self.trembles(slid, SLID * base)))
                 .flatten(),
             tips: on_its_way.filter(turns_on).map(|_| Way::of(tilt)),
         }

@@ -3,6 +3,7 @@
 use super::PageRecorder;
 use crate::Summary;
 use crate::summary::PeakRow;
+use crate::verdict::Fate;
 
 /// A passage of a block through φ = 0, between two peaks of its swing.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,7 +12,7 @@ pub struct HalfCycle {
     pub body: String,
     /// When φ is 0, s.
     pub t: f64,
-    /// ω right before and right after the impact of the corner that comes down, rad/s; none where no impact is near the
+    /// ω, relative to what carries the block, right before and right after the impact of the corner that comes down, rad/s; none where no impact is near the
     /// passage, or there were too many impacts to keep them all.
     ///
     /// The two are those at the ends of the step of that impact, wherever the crossing is: a step of gravity is all that
@@ -97,7 +98,15 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
             });
             // It bounced back, and passed the upright without an impact of its own.
             let omega = omega.filter(|omega| omega[0] * omega[1] >= 0.0);
-            let peak_after = peaks.peek().filter(|peak| stands(peak.t)).map(|peak| peak.phi);
+            // The last one may have turned without a crossing after it.
+            let unfinished = || {
+                let rocks = verdict.filter(|of| of.what == Fate::Rocks && of.t.is_some_and(|t| t > crossing.t))?;
+                rocks.last_peak
+            };
+            let peak_after = match peaks.peek() {
+                Some(peak) => Some(peak.phi).filter(|_| stands(peak.t)),
+                None => unfinished(),
+            };
             if omega.is_none() && !is_swing(before.map(|peak| peak.phi), peak_after, alpha) {
                 continue;
             }

@@ -1,7 +1,7 @@
 //! How a block moves that does so at the end of a run and has no other fate: it bounces, rolls, slides or falls (`docs/verdict.md`).
 
 use super::standing::SETTLED;
-use super::{Fates, Seen, Watch, Watched};
+use super::{Fates, ROCKED, Seen, Watch, Watched};
 use serde::{Deserialize, Serialize};
 use teeter_integrator::{State, StepReport};
 use teeter_scenario::simulation::Layout;
@@ -17,6 +17,8 @@ pub(crate) enum Going {
     Bounces,
     /// It stays on contacts with springs, and moves little and slowly.
     Vibrates,
+    /// It stays where it stands, and is shaken there.
+    Trembles,
     /// A round one turns about as fast as it goes, in the sense of its way.
     Rolls,
     /// A round one goes without turning so.
@@ -25,8 +27,8 @@ pub(crate) enum Going {
 
 impl Going {
     /// All of them, in the order in which many blocks are told.
-    pub(super) const ALL: [Self; 6] =
-        [Self::Falls, Self::Flies, Self::Bounces, Self::Vibrates, Self::Rolls, Self::Slides];
+    pub(super) const ALL: [Self; 7] =
+        [Self::Falls, Self::Flies, Self::Bounces, Self::Vibrates, Self::Trembles, Self::Rolls, Self::Slides];
 
     /// What it does, after "is still".
     pub(super) fn word(self) -> &'static str {
@@ -35,6 +37,7 @@ impl Going {
             Self::Flies => "in flight",
             Self::Bounces => "bouncing",
             Self::Vibrates => "vibrating on its contacts",
+            Self::Trembles => "trembling where it stands",
             Self::Rolls => "rolling",
             Self::Slides => "sliding",
         }
@@ -87,7 +90,7 @@ impl Fates {
 }
 
 impl Seen {
-    /// How it moves; `None` of one that does so in no way that has a word, such as one that shakes where it stands.
+    /// How it moves; `None` of one that does so in no way that has a word, such as a block that just began to slide.
     pub(super) fn going(&self, watched: &Watched, layout: &Layout, number: usize, state: &State) -> Option<Going> {
         let [vx, vy, spin] = watched.velocity(layout, number, state);
         let (t, Touched { last, landed, flown, .. }) = (state.t, self.touched);
@@ -121,7 +124,15 @@ impl Seen {
         Some(if foot.abs() <= 0.5 * speed { Going::Rolls } else { Going::Slides })
     }
 
-    /// The farthest that it was from where it stood, if it has slid back by more than `least` (m) from there to where it is, `slid` (m).
+    /// Of one that stands, has never come near its critical angle, and isn't on its way along what carries it: it has `slid` by much
+    /// less than `least` (m).
+    pub(super) fn trembles(&self, slid: Option<f64>, least: f64) -> Option<Going> {
+        let stands = self.part.is_some_and(|part| part < ROCKED);
+        let stays = slid.is_some_and(|slid| slid.abs() < 0.1 * least);
+        (stands && stays).then_some(Going::Trembles)
+    }
+
+    /// Where it turned, the farther of two, if it has slid back by more than `least` (m) from there to where it is, `slid` (m).
     pub(super) fn farthest(&self, slid: f64, least: f64) -> Option<f64> {
         let back = |reached: &f64| (reached - slid).abs();
         let farther = self.reached.into_iter().filter(|reached| reached.abs() > least && back(reached) > least);

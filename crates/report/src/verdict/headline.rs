@@ -105,7 +105,9 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         Some(farthest) if !has_slid(scene, of) => format!("slid {}, then back to its start", by(farthest)),
         Some(farthest) => {
             let side = direction(scene, slid).side;
-            format!("slid {}, then back to {} {side} its start", by(farthest), with_unit(slid.abs(), "m"))
+            // What ends on the other side, farther from its start than it was before, isn't back there.
+            let back = if farthest * slid < 0.0 && farthest.abs() <= slid.abs() { "" } else { "back " };
+            format!("slid {}, then {back}to {} {side} its start", by(farthest), with_unit(slid.abs(), "m"))
         }
     });
     let beside = |text: String| if largest.is_empty() { text } else { format!("{text} ({largest})") };

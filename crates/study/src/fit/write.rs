@@ -319,15 +319,30 @@ fn name_of(fit: &Fit, number: usize) -> String {
     }
 }
 
+/// Fewer rows than this part of all are told at the head of the page.
+const MOST_ROWS: f64 = 0.9;
+
 /// What came of the fit, at the head of the page.
 fn headline(fit: &Fit) -> String {
     let left = fit.cost.sqrt();
     let told = if left > DESCRIBED {
-        "The scene doesn’t describe all of the measured motion: what is left is"
+        "The scene doesn’t describe all of the measured motion: what is left is".to_owned()
+    } else if fit.is_misfit() {
+        format!(
+            "The scene is near the measured motion, but what is left is more than noise ({} standard deviations above it), as of another \
+             minimum or a wrong value that was held: it is",
+            short(fit.misfit)
+        )
     } else {
-        "The fitted scene describes the measured motion: what is left is"
+        "The fitted scene describes the measured motion: what is left is".to_owned()
     };
-    format!("{told} {} times the noise of the samples", short(left))
+    let rows = fit.comparison.measured.t.len();
+    let of_rows = if (fit.rows as f64) < MOST_ROWS * rows as f64 {
+        format!(", over {} of {rows} rows", fit.rows)
+    } else {
+        String::new()
+    };
+    format!("{told} {} times the noise of the samples{of_rows}", short(left))
 }
 
 /// The page.

@@ -93,7 +93,7 @@ pub(super) fn rocking(cycles: &[HalfCycle], recorder: &PageRecorder, dt: f64) ->
     html.push_str("<p class=\"note\">");
     html.push_str(if hits {
         "ω⁻ and ω⁺ are the angular velocities right before and right after the step in which the corner that comes down hits; a step of \
-         gravity is in them, too. "
+         gravity is in them, too; a dash stands where no corner landed near φ = 0. "
     } else {
         "Angular velocities before and after an impact are told where one corner stands as the other comes down. "
     });
@@ -102,7 +102,18 @@ pub(super) fn rocking(cycles: &[HalfCycle], recorder: &PageRecorder, dt: f64) ->
     } else {
         ""
     });
-    html.push_str(if hits && !scenery.driven.is_empty() {
+    let number = |cycle: &HalfCycle| scenery.blocks.iter().position(|block| block.name == cycle.body);
+    let on_blocks = cycles.iter().filter_map(number).any(|number| scenery.touches_blocks(number));
+    html.push_str(if on_blocks {
+        "Of a block that stands on another one, φ, ω⁻ and ω⁺ are relative to that one, which the impact moves, too: their ratio is not one of \
+         the block alone. "
+    } else {
+        ""
+    });
+    html.push_str("Passages between two peaks below a thousandth of the critical angle are left out. ");
+    html.push_str(if on_blocks {
+        ""
+    } else if hits && !scenery.driven.is_empty() {
         "A base that gives way spreads the loss over the half cycle: the ratio is then nearer to 1."
     } else if hits {
         "A base that gives way spreads the loss over the half cycle: the ratio is then nearer to 1, and the decay from peak to peak tells \

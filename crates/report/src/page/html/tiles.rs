@@ -101,18 +101,20 @@ fn as_told(x: f64, unit: &str) -> String {
 }
 
 /// The tiles of the block that slid farthest, of those that didn't overturn or fall: how far, and how fast it slides on.
-fn sliding(summary: &Summary) -> Vec<(String, &'static str, String)> {
+fn sliding(summary: &Summary) -> Vec<(String, String, String)> {
     let slid = summary.verdict.iter().enumerate().filter(|(_, of)| of.what == Fate::Slid);
     let far = |of: &BodyVerdict| of.slid.map_or(0.0, f64::abs);
     let Some((number, of)) = slid.max_by(|a, b| far(a.1).total_cmp(&far(b.1))) else { return Vec::new() };
-    let tile = |key: &str, label, value: Option<f64>, unit| {
+    let tile = |key: &str, label: String, value: Option<f64>, unit| {
         value.map(|value| (format!("verdict.{number}.{key}"), label, as_told(value, unit)))
     };
     let [slid, farthest] = [of.slid, of.farthest].map(|way| way.map(f64::abs));
+    let farthest = farthest.filter(|farthest| slid.is_none_or(|slid| *farthest > slid));
+    let whose = if summary.verdict.len() > 1 { format!(" ({})", of.body) } else { String::new() };
     let tiles = [
-        tile("slid", "Slid by", slid, "m"),
-        tile("farthest", "Slid at most", farthest, "m"),
-        tile("speed", "Speed at the end", of.speed, "m/s"),
+        tile("slid", format!("Slid by{whose}"), slid, "m"),
+        tile("farthest", format!("Slid at most{whose}"), farthest, "m"),
+        tile("speed", format!("Speed at the end{whose}"), of.speed, "m/s"),
     ];
     tiles.into_iter().flatten().collect()
 }
@@ -125,7 +127,8 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, smallest: f64, strikers
     for (path, label, shown) in sliding(summary) {
         let _ = writeln!(
             html,
-            "<div class=\"tile\"><dt>{label}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{shown}</dd></div>",
+            "<div class=\"tile\"><dt>{}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{shown}</dd></div>",
+            escaped(&label),
             escaped(&values.text(&path))
         );
     }
@@ -201,8 +204,12 @@ pub(super) fn numbers(values: &Numbers, summary: &Summary) -> String {
         let text = values.text(&path);
         // For people; the file, and `data-value`, have all digits.
         let shown = match (text.parse::<f64>(), unit_of(&path)) {
-            // Rounding beside the scene's energy isn't shown as energy.
-            (Ok(x), Some("J")) if !content::holds(x.abs(), summary.energy.scale) => "0 J".to_owned(),
+            // Rounding beside the scene's energy isn't shown as energy; gains are beyond the rounding of their steps.
+            (Ok(x), Some("J"))
+                if !path.contains("positive_contact_work") && !content::holds(x.abs(), summary.energy.scale) =>
+            {
+                "0 J".to_owned()
+            }
             (Ok(x), Some(unit)) => with_digits(x, unit, 6).replace('-', "\u{2212}"),
             (Ok(x), None) if text.contains('e') => scientific(x),
             (Ok(x), None) if text.contains('.') => shortest(x, 3).replace('-', "\u{2212}"),
