@@ -57,7 +57,7 @@ const COORDINATES: [Coordinate; 3] = [
 const PHI: usize = 2;
 
 /// Most points of all phase portraits together.
-const PORTRAIT_POINTS: usize = 8000;
+const PORTRAIT_POINTS: usize = 16_000;
 
 /// A block that turns by this part of what it moves otherwise has φ in its phase portrait.
 const TURNS: f64 = 0.01;
