@@ -152,7 +152,7 @@ fn digits(number: usize, scene: &Scene, measures: &BeamMeasures, document: &Docu
     } else {
         "use elements of more equal length, and less different stiffnesses of beam and supports"
     };
-    Some(document.error(&path(key), rule, remedy))
+    Some(document.error(&path(key), rule, remedy).as_warning())
 }
 
 /// Warns of a beam so thick that shear matters, with a theory without it. At midspan of a pinned
