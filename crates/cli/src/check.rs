@@ -60,7 +60,9 @@ fn format_preview(resolved: &Resolved, preview: &Preview, measured: Option<&Firs
     section(&mut text, "bodies", &bodies(scene, preview));
     section(&mut text, "model", &model(scene, preview));
     section(&mut text, "run", &run(scene, preview, measured));
-    section(&mut text, "left out", &preview.left_out);
+    if !preview.left_out.is_empty() {
+        section(&mut text, "left out", &preview.left_out);
+    }
     if !preview.removed.is_empty() {
         let mut lines: Vec<String> = preview.removed.iter().take(LISTED).map(removed).collect();
         lines.extend(more(preview.removed.len(), "removal"));

@@ -144,7 +144,7 @@ fn write_all(
     results.write("compare.html", html)?;
     results.write("compare.json", json(comparison, block, run, measured))?;
     let mut text = String::new();
-    for found in &comparison.channels {
+    for found in comparison.channels.iter().filter(|found| found.differences.rows > 0) {
         let (unit, factor) = found.channel.shown();
         let d = found.differences;
         // What was measured may not move at all.

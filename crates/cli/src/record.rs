@@ -290,8 +290,8 @@ impl<'a> Held<'a> {
             none if none.is_empty() => "as recorded".to_owned(),
             some => some,
         };
-        let title = Path::new(self.name).file_name().map_or_else(|| self.name.into(), |name| name.to_string_lossy());
-        results.write("record.html", record_page(self.scene, &title, &corrections))?;
+        let file = Path::new(self.name).file_name().map_or_else(|| self.name.into(), |name| name.to_string_lossy());
+        results.write("record.html", record_page(self.scene, &file, &corrections))?;
         results.write("record.json", self.json_text())
     }
 }

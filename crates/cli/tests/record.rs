@@ -94,6 +94,10 @@ fn a_page_and_figures_are_written_where_asked_and_not_overwritten() {
     for file in ["record.json", "record.csv", "record.html", "figures/records.svg", "figures/spectra.svg"] {
         assert!(folder.join("held").join(file).is_file(), "{file}");
     }
+    let page = std::fs::read_to_string(folder.join("held/record.html")).unwrap();
+    for told in ["<h1>a.csv</h1>", "Time of the peak acceleration", "Displacement at the end", "The record drifts"] {
+        assert!(page.contains(told), "{told}: {page}");
+    }
     let motion = std::fs::read_to_string(folder.join("held/record.csv")).unwrap();
     let second: Vec<f64> = motion.lines().nth(2).unwrap().split(',').map(|cell| cell.parse().unwrap()).collect();
     // a falls from 0.5 to -2 in half a second: v = ½h(a₀ + a₁), d = h²(2a₀ + a₁)/6.

@@ -82,7 +82,9 @@ fn a_study_writes_its_files_and_says_the_same_again() {
         .split("<code>teeter run ")
         .skip(1)
         .map(|piece| {
-            piece.split("</code>").next().unwrap().replace("&quot;", "\"").replace("&#39;", "'").replace("&amp;", "&")
+            let command = piece.split("</code>").next().unwrap();
+            let copied = command.replace("<span class=\"word\">", "").replace("</span>", "");
+            copied.replace("&quot;", "\"").replace("&#39;", "'").replace("&amp;", "&")
         })
         .collect();
     assert!(commands.len() > 10, "advice, front and table: {}", commands.len());

@@ -8,32 +8,28 @@ use teeter_beam::Axial;
 #[must_use]
 pub fn left_out(scene: &Scene) -> Vec<&'static str> {
     let mut left_out = Vec::new();
-    if scene.beams.is_empty() {
-        left_out.push("beams and their factorisations: the scene has none");
-    } else {
-        let any = |is: fn(&BeamScene) -> bool| scene.beams.iter().any(is);
-        if any(|beam| beam.spec.axial == Axial::Free) {
-            left_out.push(if any(|beam| beam.motion.is_given()) {
-                "axial motion of beams relative to their supports, which are axially free"
-            } else {
-                "axial motion of beams: their supports are axially free"
-            });
-        }
-        if any(|beam| beam.spec.axial == Axial::Held) {
-            left_out.push("axial inertia of beams held along their axis: the axial force is constant along the beam");
-        }
-        if any(|beam| matches!(beam.spec.axial, Axial::Elastic { .. })) {
-            left_out.push("the effect of deflections on elastic axes: axial motion is not coupled to them");
-        }
-        if any(|beam| !beam.is_sheared()) {
-            left_out.push("shear and rotatory inertia of beams of the theory euler-bernoulli");
-        }
-        if any(|beam| beam.reduction.is_some()) {
-            left_out.push("the higher shapes of beams in modes, which an impact would excite");
-        }
-        if any(|beam| !beam.self_weight) {
-            left_out.push("self-weight of beams: deflections are relative to the shape under it");
-        }
+    let any = |is: fn(&BeamScene) -> bool| scene.beams.iter().any(is);
+    if any(|beam| beam.spec.axial == Axial::Free) {
+        left_out.push(if any(|beam| beam.motion.is_given()) {
+            "axial motion of beams relative to their supports, which are axially free"
+        } else {
+            "axial motion of beams: their supports are axially free"
+        });
+    }
+    if any(|beam| beam.spec.axial == Axial::Held) {
+        left_out.push("axial inertia of beams held along their axis: the axial force is constant along the beam");
+    }
+    if any(|beam| matches!(beam.spec.axial, Axial::Elastic { .. })) {
+        left_out.push("the effect of deflections on elastic axes: axial motion is not coupled to them");
+    }
+    if any(|beam| !beam.is_sheared()) {
+        left_out.push("shear and rotatory inertia of beams of the theory euler-bernoulli");
+    }
+    if any(|beam| beam.reduction.is_some()) {
+        left_out.push("the higher shapes of beams in modes, which an impact would excite");
+    }
+    if any(|beam| !beam.self_weight) {
+        left_out.push("self-weight of beams: deflections are relative to the shape under it");
     }
     meetings(scene, &mut left_out);
     left_out

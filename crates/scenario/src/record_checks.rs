@@ -3,6 +3,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
 use crate::scene::RecordScene;
+use teeter_text::readable::with_digits;
 
 /// A velocity at the end of a record of at least this fraction of its largest one gives a warning.
 const LEFT_OVER: f64 = 0.01;
@@ -20,8 +21,9 @@ pub(crate) fn warning(record: &RecordScene, end: f64, document: &Document) -> Op
         return None;
     }
     let rule = format!(
-        "the record ends at {lasts:.4} s with a velocity of {last:.3e} m/s, {:.0} % of its largest one, which goes on until the end of the \
+        "the record ends at {lasts:.4} s with a velocity of {}, {:.0} % of its largest one, which goes on until the end of the \
          run at {end} s",
+        with_digits(last, "m/s", 3),
         100.0 * last.abs() / largest
     );
     let remedy = "correct its baseline, such as baseline = \"linear\", or end the run with the record";

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use teeter_beam::{Axial, Beam};
 use teeter_integrator::{ImpactLaw, PairLaw};
-use teeter_text::readable::with_digits;
+use teeter_text::readable::{shortest, with_digits};
 
 /// Findings of the checks.
 #[derive(Debug, Default)]
@@ -274,8 +274,10 @@ fn loosely_solved(scene: &Scene, document: &Document) -> Option<Diagnostic> {
     if tolerance <= LOOSE || !scene.has_contacts() {
         return None;
     }
-    let rule =
-        format!("contact impulses off by some {:.1e} % of the largest would still count as solved", 100.0 * tolerance);
+    let rule = format!(
+        "contact impulses off by some {} % of the largest would still count as solved",
+        shortest(100.0 * tolerance, 2)
+    );
     let remedy = "use at most 1e-4; 1e-10, the default, costs little more";
     Some(document.error("solver.tolerance", rule, remedy).as_warning())
 }

@@ -9,6 +9,7 @@ use crate::wording::seconds;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use teeter_integrator::{Given, Signal, Table};
+use teeter_text::readable::{shortest, with_digits};
 
 /// Least number of steps per period of a signal.
 const STEPS_A_SWING: f64 = 10.0;
@@ -295,7 +296,7 @@ fn too_long(signal: &SignalScene, end: f64, document: &Document) -> Option<Diagn
     if last <= FAR_TOO_LONG * end {
         return None;
     }
-    let rule = format!("the table extends to {last} s, {:.1e} times the run of {end} s", last / end);
+    let rule = format!("the table extends to {last} s, {} times the run of {end} s", shortest(last / end, 2));
     let remedy = "check the unit of its times: s, or the unit in the heading, such as t [ms]";
     Some(document.error(&format!("signal.{}.file", signal.name), rule, remedy).as_note())
 }
@@ -448,7 +449,8 @@ fn fast_starts(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let beams = scene.beams.iter().filter_map(|beam| {
         let start = fast_start(beam.motion.0[1].as_ref()?, end)?;
         let rule = format!(
-            "the supports start with {start:.3e} m/s, and the beam with them: it is at rest relative to its supports, not in the world"
+            "the supports start with {}, and the beam with them: it is at rest relative to its supports, not in the world",
+            with_digits(start, "m/s", 3)
         );
         let remedy = "if the beam should start from rest, let the motion start with a velocity of 0, as shape = \"ricker\" or a \
              harmonic displacement of phase = \"90 deg\" does";
@@ -462,7 +464,11 @@ fn fast_starts(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let ground = scene.ground.as_ref().zip(left_behind).and_then(|(ground, block)| {
         let starts = ground.motion.0.iter().take(2).flatten().filter_map(|axis| fast_start(axis, end));
         let start = starts.max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
-        let rule = format!("the ground starts with {start:.3e} m/s, but `{}` on it starts at rest: the motion starts with a jolt", block.name);
+        let rule = format!(
+            "the ground starts with {}, but `{}` on it starts at rest: the motion starts with a jolt",
+            with_digits(start, "m/s", 3),
+            block.name
+        );
         let remedy = "let the motion start with a velocity of 0, as shape = \"ricker\" or a harmonic displacement of phase = \"90 deg\" does, or \
              give the block the velocity of the ground";
         Some(document.error("ground.motion", rule, remedy).as_warning())

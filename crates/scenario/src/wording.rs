@@ -73,7 +73,7 @@ pub fn part_of(sag: f64, span: f64) -> String {
         f64::INFINITY => "nothing of its span".to_owned(),
         ratio if ratio >= 9.5 => format!("1/{ratio:.0} of its span"),
         ratio if ratio >= 1.0 => format!("1/{ratio:.1} of its span"),
-        _ => format!("{:.1e} times its span", sag / span),
+        _ => format!("{} times its span", whole_or_two_digits(sag / span)),
     }
 }
 

@@ -6,6 +6,7 @@ use crate::summary::RecordSummary;
 use std::fmt::Write;
 use std::sync::Arc;
 use teeter_plot::{Axis, Figure, Legend, Panel, Series, escaped};
+use teeter_record::Record;
 use teeter_scenario::scene::RecordScene;
 
 /// Damping ratio of the response spectra.
@@ -58,12 +59,55 @@ pub fn record_figures(record: &Arc<RecordScene>, width_mm: f64) -> Vec<(String, 
         .collect()
 }
 
-/// A self-contained page of a record in the style of a run's report; `subtitle` says how it was
-/// corrected.
+/// A self-contained page of a record in the style of a run's report, headed by its event and station where the file names them, or
+/// else by `file`; `corrections` says how it was corrected.
 #[must_use]
-pub fn record_page(record: &Arc<RecordScene>, title: &str, subtitle: &str) -> String {
+pub fn record_page(record: &Arc<RecordScene>, file: &str, corrections: &str) -> String {
+    let named = event_and_station(record.record.station(), record.record.description());
+    let (title, subtitle) = match &named {
+        Some(named) => (named.as_str(), format!("{file} · {corrections}")),
+        None => (file, corrections.to_owned()),
+    };
     let section = section(std::slice::from_ref(record), &[RecordSummary::new(record)], false);
-    super::document(title, subtitle, RECORD_STYLE, &section)
+    super::document(title, &subtitle, RECORD_STYLE, &section)
+}
+
+/// What the header of a file says of a record; `None` if it says nothing.
+fn event_and_station(station: &str, description: &str) -> Option<String> {
+    let [station, description] =
+        [station, description].map(|text| text.split_whitespace().collect::<Vec<_>>().join(" "));
+    match (station.is_empty(), description.is_empty()) {
+        (true, true) => None,
+        (false, true) => Some(station),
+        // PEER's description has the station in it.
+        (_, false) if description.contains(&station) => Some(description),
+        _ => Some(format!("{station}, {description}")),
+    }
+}
+
+/// A displacement at the end of more than this part of its peak is told: records are of motions that come to rest.
+const DRIFTS: f64 = 0.5;
+
+/// What a reader of a record's own page should know of it.
+fn remarks(record: &Record) -> Vec<String> {
+    let mut remarks = Vec::new();
+    if record.assumes_its_unit() {
+        remarks.push("The file names no unit: its values are taken as m/s²; --unit gives another.".to_owned());
+    }
+    let ([_, last], peak) = (at_the_end(record), record.displacement_peak().size);
+    if last.abs() > DRIFTS * peak {
+        remarks.push(format!(
+            "The record drifts: its displacement at the end is {:.0} % of its peak. A correction of the baseline takes this out (--baseline              linear, or baseline = \"linear\" in a scene), unless the ground itself was displaced for good.",
+            100.0 * last.abs() / peak
+        ));
+    }
+    remarks
+}
+
+/// Velocity (m/s) and displacement (m) after the last value.
+fn at_the_end(record: &Record) -> [f64; 2] {
+    let (velocities, displacements) = record.motion();
+    [velocities, displacements].map(|values| values.last().copied().unwrap_or(0.0))
 }
 
 /// Histories and spectra side by side where there is room.
@@ -133,17 +177,38 @@ fn thinned(dt: f64, values: &[f64]) -> Vec<(f64, f64)> {
     points
 }
 
-/// A measure of a record: its name and unit.
-type Measure = (&'static str, &'static str, fn(&RecordSummary) -> f64);
+/// A measure of a record.
+struct Measure {
+    name: &'static str,
+    unit: &'static str,
+    value: fn(&RecordSummary, &Record) -> f64,
+    /// Whether the page of a run has it, too, and not only that of the record alone.
+    in_report: bool,
+}
+
+impl Measure {
+    const fn of(name: &'static str, unit: &'static str, value: fn(&RecordSummary, &Record) -> f64) -> Self {
+        Self { name, unit, value, in_report: true }
+    }
+
+    const fn alone(name: &'static str, unit: &'static str, value: fn(&RecordSummary, &Record) -> f64) -> Self {
+        Self { name, unit, value, in_report: false }
+    }
+}
 
 /// What the table says of a record.
-const MEASURES: [Measure; 6] = [
-    ("Duration", "s", |of| of.duration),
-    ("Peak acceleration (PGA)", "m/s²", |of| of.peak_acceleration),
-    ("Peak velocity (PGV)", "m/s", |of| of.peak_velocity),
-    ("Peak displacement (PGD)", "m", |of| of.peak_displacement),
-    ("Arias intensity", "m/s", |of| of.arias_intensity),
-    ("Significant duration, 5–95 %", "s", |of| of.significant_duration),
+const MEASURES: [Measure; 11] = [
+    Measure::of("Duration", "s", |of, _| of.duration),
+    Measure::of("Peak acceleration (PGA)", "m/s²", |of, _| of.peak_acceleration),
+    Measure::alone("Time of the peak acceleration", "s", |_, record| record.acceleration_peak().time),
+    Measure::of("Peak velocity (PGV)", "m/s", |of, _| of.peak_velocity),
+    Measure::alone("Time of the peak velocity", "s", |_, record| record.velocity_peak().time),
+    Measure::of("Peak displacement (PGD)", "m", |of, _| of.peak_displacement),
+    Measure::alone("Time of the peak displacement", "s", |_, record| record.displacement_peak().time),
+    Measure::of("Arias intensity", "m/s", |of, _| of.arias_intensity),
+    Measure::of("Significant duration, 5–95 %", "s", |of, _| of.significant_duration),
+    Measure::alone("Velocity at the end", "m/s", |_, record| at_the_end(record)[0]),
+    Measure::alone("Displacement at the end", "m", |_, record| at_the_end(record)[1]),
 ];
 
 /// The section of the page with a table of measures and both figures; empty without records. `named`: each with the motion that it
@@ -168,16 +233,20 @@ pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary],
         html.push_str("</tr></thead>\n");
     }
     html.push_str("<tbody>\n");
-    for (what, unit, value) in MEASURES {
-        let _ = write!(html, "<tr><th scope=\"row\">{what} <span class=\"unit\">({unit})</span></th>");
-        for of in summaries {
-            let _ = write!(html, "<td>{}</td>", rounded(value(of), 4));
+    for Measure { name, unit, value, .. } in MEASURES.iter().filter(|measure| measure.in_report || !named) {
+        let _ = write!(html, "<tr><th scope=\"row\">{name} <span class=\"unit\">({unit})</span></th>");
+        for (of, record) in summaries.iter().zip(records) {
+            let shown = rounded(value(of, &record.record), 4).to_string().replace('-', "\u{2212}");
+            let _ = write!(html, "<td>{shown}</td>");
         }
         html.push_str("</tr>\n");
     }
     html.push_str("</tbody></table></div>\n");
     for of in summaries.iter().filter(|of| named && !of.description.is_empty()) {
         let _ = writeln!(html, "<p class=\"note\">{}: {}</p>", escaped(&of.file), escaped(&of.description));
+    }
+    for remark in records.iter().filter(|_| !named).flat_map(|of| remarks(&of.record)) {
+        let _ = writeln!(html, "<p class=\"note\">{}</p>", escaped(&remark));
     }
     html.push_str("<div class=\"pictures\">\n");
     for figure in [Some(histories), spectra(records)].into_iter().flatten() {
@@ -190,6 +259,25 @@ pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary],
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_record_is_headed_by_what_its_header_says() {
+        let head = |station, description| event_and_station(station, description);
+        assert_eq!(head("El Somewhere", "Event, 1979,  El Somewhere, 230").unwrap(), "Event, 1979, El Somewhere, 230");
+        assert_eq!(head("Here", "None, 2000").unwrap(), "Here, None, 2000");
+        assert_eq!((head("Here", ""), head("", " ")), (Some("Here".to_owned()), None));
+    }
+
+    #[test]
+    fn a_record_that_drifts_is_told() {
+        let drift = Record::new("", 0.01, vec![1.0; 100]).unwrap();
+        assert!(remarks(&drift).iter().any(|text| text.contains("100 % of its peak")));
+        // There and back again.
+        let wave = (0..=400).map(|k| (0.1 * std::f64::consts::PI * f64::from(k)).sin() * f64::from(200 - k).signum());
+        let still = Record::new("", 0.01, wave.collect()).unwrap();
+        let [_, last] = at_the_end(&still);
+        assert!(last.abs() < 0.1 * still.displacement_peak().size && remarks(&still).is_empty(), "{last}");
+    }
 
     #[test]
     fn a_record_is_named_by_what_it_moves() {

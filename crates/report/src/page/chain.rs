@@ -37,8 +37,8 @@ pub struct ThrustLine {
     pub interval: [f64; 2],
 }
 
-/// Fewest blocks of a chain.
-const FEWEST: usize = 3;
+/// Fewest blocks of a chain, and of a network of forces: one on its support, or two, show no way of the forces.
+pub(super) const FEWEST: usize = 3;
 
 /// A pair whose force is below this part of the largest doesn't carry.
 const CARRIES: f64 = 1e-9;
@@ -85,6 +85,33 @@ impl<'a> LastPicture<'a> {
         let links = recorder.kept.network.pictures(rows.len()).last().unwrap_or_default();
         let thrusts = links.iter().filter_map(thrust).collect();
         Some(Self { interval: [from, to], poses, row, thrusts })
+    }
+
+    /// The most free blocks that forces link with each other; supports end the way of a force.
+    pub(super) fn most_linked(&self, is_free: impl Fn(usize) -> bool) -> usize {
+        let mut parents: Vec<usize> = (0..self.poses.len()).collect();
+        fn root(parents: &mut [usize], mut block: usize) -> usize {
+            while parents[block] != block {
+                parents[block] = parents[parents[block]];
+                block = parents[block];
+            }
+            block
+        }
+        let largest = self.thrusts.iter().map(Thrust::size).fold(0.0, f64::max);
+        for thrust in self.thrusts.iter().filter(|thrust| thrust.size() > CARRIES * largest) {
+            if let SupportingBody::Block(other) = thrust.other
+                && is_free(thrust.block)
+                && is_free(other)
+            {
+                let (one, other) = (root(&mut parents, thrust.block), root(&mut parents, other));
+                parents[one] = other;
+            }
+        }
+        let mut counts = vec![0; parents.len()];
+        for block in (0..parents.len()).filter(|block| is_free(*block)) {
+            counts[root(&mut parents, block)] += 1;
+        }
+        counts.into_iter().max().unwrap_or(0)
     }
 }
 

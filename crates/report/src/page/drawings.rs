@@ -1,6 +1,6 @@
 //! The scene at its end as drawings to scale: the network of contact forces, and lines of thrust.
 
-use super::chain::{LastPicture, Thrust, ThrustLine, thrust_lines};
+use super::chain::{FEWEST, LastPicture, Thrust, ThrustLine, thrust_lines};
 use super::content;
 use super::placed;
 use super::recorder::PageRecorder;
@@ -41,7 +41,8 @@ fn time_note([from, to]: [f64; 2]) -> String {
 /// pressure, between a block and anything else, as a block whose motion is prescribed, from its centre to that.
 pub(super) fn force_chains(recorder: &PageRecorder) -> Option<Drawing> {
     let scenery = &recorder.scenery;
-    let last = LastPicture::of(recorder).filter(|last| scenery.has_network() && !last.thrusts.is_empty())?;
+    let is_free = |block: usize| !scenery.blocks[block].driven;
+    let last = LastPicture::of(recorder).filter(|last| scenery.has_network() && last.most_linked(is_free) >= FEWEST)?;
     let largest = last.thrusts.iter().map(Thrust::size).fold(0.0, f64::max);
     let mut drawing = scene(recorder, &last, "Contact forces as a network at the end of the run");
     let mut reaches: Vec<f64> = scenery.blocks.iter().map(|block| block.reach).collect();
@@ -53,10 +54,7 @@ pub(super) fn force_chains(recorder: &PageRecorder) -> Option<Drawing> {
     let mut classes: Vec<Vec<Vec<(f64, f64)>>> = vec![Vec::new(); CLASSES + 1];
     for thrust in &last.thrusts {
         let class = (thrust.size() / largest * CLASSES as f64).round() as usize;
-        let centre = |block: usize| {
-            let free = !scenery.blocks[block].driven;
-            free.then(|| (last.poses[block][0], last.poses[block][1]))
-        };
+        let centre = |block: usize| is_free(block).then(|| (last.poses[block][0], last.poses[block][1]));
         let other = match thrust.other {
             SupportingBody::Block(other) => centre(other),
             SupportingBody::Ground | SupportingBody::Beam(_) => None,

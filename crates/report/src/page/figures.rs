@@ -17,7 +17,7 @@ use teeter_plot::{Axis, Band, Colour, Figure, Legend, Panel, Series};
 /// probes; `ground.svg`, `ground_v.svg`, `ground_a.svg` and the same with `_phi` of ground and supports that move; `contact_forces.svg` and
 /// `slip.svg`; `section_forces.svg`; `energy.svg`. Phase portraits `phase.svg` (φ), `phase_x.svg`, `phase_y.svg` of the coordinate in which a block
 /// moves most. Over the span: `shapes.svg` and, where the scene asks for it, `envelopes.svg`. `records.svg` and
-/// `spectra.svg` where records prescribe motions, `force_chains.svg` where two blocks or more touch something,
+/// `spectra.svg` where records prescribe motions, `force_chains.svg` where contacts link three blocks or more at the end,
 /// `thrust_line.svg` and `eccentricity.svg` where blocks form a [chain](super::thrust_lines). Of many blocks `phi.svg`,
 /// `omega.svg` and `displacement.svg` show bands, and there are no portraits. What would show nothing but rounding has no figure.
 #[must_use]

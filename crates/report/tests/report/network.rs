@@ -182,6 +182,28 @@ fn chains_are_found_by_what_touches_not_by_names() {
 }
 
 #[test]
+fn blocks_that_contacts_do_not_link_have_no_force_chains() {
+    let scene = |places: &[[&str; 2]]| {
+        let mut text = String::from(
+            "[time]\nend = '20 ms'\nstep = '1 ms'\n[ground]\n[material.stone]\ndensity = '2400 kg/m^3'\n\
+             [contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.5\n[contact.stones]\nbetween = ['*', '*']\nfriction = 0.4\n",
+        );
+        for (number, [x, y]) in places.iter().enumerate() {
+            text += &format!(
+                "[block.b{number}]\nmaterial = 'stone'\nwidth = '10 cm'\nheight = '10 cm'\ndepth = '10 cm'\nposition = ['{x}', '{y}']\n"
+            );
+        }
+        text
+    };
+    let drawn = |name: &str, places: &[[&str; 2]]| {
+        figures(&run(name, &scene(places)).page).iter().any(|(file, _)| file == "force_chains.svg")
+    };
+    let column = [["0 m", "5 cm"], ["0 m", "15 cm"], ["0 m", "25 cm"]];
+    assert!(drawn("column", &column));
+    assert!(!drawn("two", &column[..2]) && !drawn("beside", &[["0 m", "5 cm"], ["0.2 m", "5 cm"], ["0.4 m", "5 cm"]]));
+}
+
+#[test]
 fn many_bodies_have_bands_and_the_few_that_go_furthest() {
     let mut text = String::from(
         "[time]\nend = '0.3 s'\nstep = '1 ms'\n[ground]\n[material.stone]\ndensity = '2400 kg/m^3'\n\

@@ -103,11 +103,13 @@ fn rounding_is_no_loss_of_energy() {
     let html = &run("still", &text.unwrap()).html;
     let tile = &html[html.find("data-summary=\"energy.lost\"").unwrap()..];
     let shown = &tile[tile.find('>').unwrap() + 1..tile.find("</dd>").unwrap()];
-    assert_eq!(shown, "0 J");
+    assert_eq!(shown, "0\u{a0}J");
     let drop = &scenario("drop").html;
     let tile = &drop[drop.find("data-summary=\"energy.lost\"").unwrap()..];
-    assert!(tile[..tile.find("</dd>").unwrap()].ends_with("mJ") || tile[..tile.find("</dd>").unwrap()].ends_with(" J"));
-    assert!(!tile[..tile.find("</dd>").unwrap()].ends_with(">0 J"), "what is lost is told");
+    assert!(
+        tile[..tile.find("</dd>").unwrap()].ends_with("mJ") || tile[..tile.find("</dd>").unwrap()].ends_with("\u{a0}J")
+    );
+    assert!(!tile[..tile.find("</dd>").unwrap()].ends_with(">0\u{a0}J"), "what is lost is told");
 }
 
 /// What the tile of a number shows; none if there is no such tile.
@@ -121,7 +123,7 @@ fn rounding_is_no_depth_and_what_does_not_rock_has_no_share_of_its_critical_angl
     let text =
         std::fs::read_to_string(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/incline.toml"));
     let html = &run("still-at-depth", &text.unwrap()).html;
-    assert_eq!((tile(html, "max_penetration"), tile(html, "max_phi_over_alpha")), (Some("0 m"), None));
+    assert_eq!((tile(html, "max_penetration"), tile(html, "max_phi_over_alpha")), (Some("0\u{a0}m"), None));
     let rocks = &scenario("free-rocking-on-ground").html;
     assert!(tile(rocks, "max_phi_over_alpha").is_some_and(|share| share.starts_with("0.39")));
 }

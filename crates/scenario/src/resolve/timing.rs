@@ -6,6 +6,7 @@ use crate::scene::{BeamScene, BlockScene, ContactScene, Crowd, Scene, SchemeName
 use crate::wording;
 use crate::words::{SchemeChoice, StopWord, Word};
 use teeter_integrator::{GeneralizedAlphaSettings, PairLaw};
+use teeter_text::readable;
 
 /// Most steps of a run.
 pub const MAX_STEPS: f64 = 1e12;
@@ -240,7 +241,8 @@ impl Resolver<'_, '_> {
         // Compared as products, so that the default for a thin block passes.
         if given > DOUBTFUL_GAP * shortest {
             let rule = format!(
-                "{part:.1e} of the shortest side of a block, {shortest} m: blocks may float that far above their support"
+                "{} of the shortest side of a block, {shortest} m: blocks may float that far above their support",
+                readable::shortest(part, 2)
             );
             let most = |part: f64| format!("use at most {:.0e} m, or leave it out", part * shortest);
             if given > MOST_GAP * shortest {

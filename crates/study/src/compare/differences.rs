@@ -19,7 +19,7 @@ pub struct Differences {
     /// The largest measured magnitude, to which relative numbers refer; for a position, from its
     /// mean.
     pub scale: f64,
-    /// Number of rows.
+    /// Number of rows; of a rate that was not measured itself, those with complete windows.
     pub rows: usize,
 }
 
@@ -63,8 +63,11 @@ pub(super) fn of(
         let rate = channel.rate().filter(|rate| motion.values(*rate).is_none());
         let rates = rate.map(|rate| {
             let (a, b) = (unsmoothed(measured.rate.clone()), unsmoothed(simulated.rate.clone()));
-            let [differences, held] =
-                [rows, held].map(|rows| self::differences(rate, t, &a.value, &b.value, rows.clone()));
+            // At an end of either motion a one-sided window makes the largest difference of noise alone.
+            let [differences, held] = [rows, held].map(|rows| {
+                let rows = overlap(rows, &overlap(&measured.complete, &simulated.complete));
+                self::differences(rate, t, &a.value, &b.value, rows)
+            });
             let held = some(held);
             ChannelComparison {
                 channel: rate,
@@ -89,6 +92,10 @@ pub(super) fn of(
     }
     found.sort_by_key(|comparison| Channel::ALL.iter().position(|channel| *channel == comparison.channel));
     found
+}
+
+fn overlap(a: &Range<usize>, b: &Range<usize>) -> Range<usize> {
+    a.start.max(b.start)..a.end.min(b.end)
 }
 
 /// The mean of simulated minus measured values.

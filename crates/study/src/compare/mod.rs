@@ -148,5 +148,6 @@ pub(crate) fn sampled(trace: &MotionTrace, channel: Channel, t: &[f64], like: &[
 /// Samples of a rate that was measured itself.
 pub(crate) fn unsmoothed(value: Vec<f64>) -> LocalFit {
     let rate = vec![f64::NAN; value.len()];
-    LocalFit { value, rate, noise: 0.0, window: 1 }
+    let complete = 0..value.len();
+    LocalFit { value, rate, noise: 0.0, window: 1, complete }
 }

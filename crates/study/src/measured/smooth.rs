@@ -1,5 +1,7 @@
 //! Values and rates of sampled data by local parabolas.
 
+use std::ops::Range;
+
 /// Least number of rows of a window: a parabola needs three.
 pub const LEAST_WINDOW: usize = 3;
 
@@ -16,6 +18,9 @@ pub struct LocalFit {
     pub noise: f64,
     /// The rows of the window; 1 if nothing was smoothed.
     pub window: usize,
+    /// The samples from the first to the last with a complete window around them. At the ends, where the
+    /// window reaches to one side only, a rate has several times the error of the others.
+    pub complete: Range<usize>,
 }
 
 /// Fits a parabola by least squares through `window` samples around each sample (Savitzky and Golay
@@ -25,10 +30,12 @@ pub struct LocalFit {
 pub fn local_fit(t: &[f64], y: &[f64], window: usize) -> LocalFit {
     let present: Vec<usize> = (0..t.len()).filter(|&k| y[k].is_finite()).collect();
     let window = window.max(LEAST_WINDOW).min(present.len());
-    let mut fit = LocalFit { value: vec![f64::NAN; t.len()], rate: vec![f64::NAN; t.len()], noise: 0.0, window };
+    let unknown = vec![f64::NAN; t.len()];
+    let mut fit = LocalFit { value: unknown.clone(), rate: unknown, noise: 0.0, window, complete: 0..0 };
     if window < LEAST_WINDOW {
         return fit;
     }
+    fit.complete = present[window / 2]..present[present.len() - window.div_ceil(2)] + 1;
     let mut squares = Vec::new();
     for (place, &k) in present.iter().enumerate() {
         let first = place.saturating_sub(window / 2).min(present.len() - window);

@@ -62,12 +62,25 @@ pub(crate) fn html_list(sentences: &[String]) -> String {
     format!("<ul>\n{}</ul>\n", sentences.iter().map(item).collect::<String>())
 }
 
+/// A command for HTML, which lines break between words only: a browser breaks them after hyphens, too. A word longer than a line is broken
+/// all the same.
+pub(crate) fn command_words(command: &str) -> String {
+    let word = |word: &str| {
+        let text = escaped(word);
+        if word.contains('-') { format!("<span class=\"word\">{text}</span>") } else { text }
+    };
+    command.split(' ').map(word).collect::<Vec<_>>().join(" ")
+}
+
 /// Text for HTML in which what stands between backquotes is code.
 pub(crate) fn with_code(text: &str) -> String {
     let mut html = String::new();
     for (number, piece) in text.split('`').enumerate() {
-        let piece = escaped(piece);
-        html.push_str(&if number % 2 == 1 { format!("<code>{piece}</code>") } else { unbroken(&piece) });
+        html.push_str(&if number % 2 == 1 {
+            format!("<code>{}</code>", command_words(piece))
+        } else {
+            unbroken(&escaped(piece))
+        });
     }
     html
 }
@@ -97,6 +110,13 @@ mod tests {
         assert_eq!((kind(4, "0.123456789"), kind(5, "0.123456789")), ("table", "list"));
         // Lines are broken between words; tags take no room.
         assert_eq!((kind(5, "0.1234 to 0.2345"), kind(5, "<code class=\"key\">0.1234</code>")), ("table", "table"));
+    }
+
+    #[test]
+    fn lines_of_commands_break_between_words_only() {
+        let words = command_words("teeter run a&b.toml --set time.scheme=moreau-jean");
+        let whole = ["--set", "time.scheme=moreau-jean"].map(|word| format!("<span class=\"word\">{word}</span>"));
+        assert_eq!(words, format!("teeter run a&amp;b.toml {} {}", whole[0], whole[1]));
     }
 
     #[test]

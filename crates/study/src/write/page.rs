@@ -1,7 +1,7 @@
 //! `tradeoff.html`: a self-contained page in the style of a run's report.
 
 use super::front;
-use super::html::{capitalised, with_code};
+use super::html::{capitalised, command_words, with_code};
 use super::sentences::{NOTHING_MOVES, advised, command};
 use super::{duration, findings, percent, pruning, short};
 use crate::{Quantity, Row, Tradeoff};
@@ -60,7 +60,7 @@ struct Page<'a> {
 
 impl Page<'_> {
     fn command(&self, row: &Row) -> String {
-        escaped(&command(self.study, self.scene, &row.setting))
+        command_words(&command(self.study, self.scene, &row.setting))
     }
 
     fn advice(&self, html: &mut String) {
@@ -126,7 +126,7 @@ impl Page<'_> {
                 html,
                 "<tbody><tr><th scope=\"rowgroup\" colspan=\"{columns}\" class=\"setting\"><div>{}: <code>{}</code></div></th></tr>\n<tr><td>{} s</td>",
                 escaped(&capitalised(check.what)),
-                escaped(&check.setting.to_string()),
+                command_words(&check.setting.to_string()),
                 short(check.agrees_until)
             );
             errors(html, &check.errors);

@@ -127,9 +127,10 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, smallest: f64, strikers
     for (path, label, shown) in sliding(summary) {
         let _ = writeln!(
             html,
-            "<div class=\"tile\"><dt>{}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{shown}</dd></div>",
+            "<div class=\"tile\"><dt>{}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{}</dd></div>",
             escaped(&label),
-            escaped(&values.text(&path))
+            escaped(&values.text(&path)),
+            in_one_line(&shown)
         );
     }
     let impacts = format!("Impacts{strikers}");
@@ -166,13 +167,19 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, smallest: f64, strikers
         let bad = path == "contact.unconverged_steps" && summary.contact.unconverged_steps > 0;
         let _ = writeln!(
             html,
-            "<div class=\"tile{}{}\"><dt>{label}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{shown}</dd></div>",
+            "<div class=\"tile{}{}\"><dt>{label}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{}</dd></div>",
             if number >= NUMERIC { " numeric" } else { "" },
             if bad { " bad" } else { "" },
-            escaped(&values.text(path))
+            escaped(&values.text(path)),
+            in_one_line(&shown)
         );
     }
     html
+}
+
+/// A value that isn't parted from its unit at the end of a line.
+fn in_one_line(shown: &str) -> String {
+    shown.replace(' ', "\u{a0}")
 }
 
 /// What the values of the table are, in words. One that has none here goes by its path.

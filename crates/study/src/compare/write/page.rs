@@ -94,7 +94,7 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
     }
     texts.push(format!(
         "both motions are sampled at the measured times ({} s apart) and smoothed by parabolas through {} rows; rates are \
-         those of the parabolas",
+         those of the parabolas, and are compared where the window is complete on both sides",
         short(measured.interval()),
         settings.window
     ));
@@ -214,10 +214,27 @@ fn tilt(comparison: &Comparison) -> Option<String> {
     ))
 }
 
+/// The columns of the table of differences.
+const QUANTITY_HEADING: [&str; 8] = [
+    "Quantity",
+    "Root mean square",
+    "its share",
+    "Largest difference",
+    "its share",
+    "its time",
+    "Mean",
+    "Noise of the samples",
+];
+
 fn quantity_row(found: &ChannelComparison) -> Vec<String> {
     let (unit, factor) = found.channel.shown();
     let d = found.differences;
     let unit = if unit == "°" { unit.to_owned() } else { format!("\u{a0}{unit}") };
+    if d.rows == 0 {
+        let mut cells = vec!["–".to_owned(); QUANTITY_HEADING.len()];
+        found.channel.title().clone_into(&mut cells[0]);
+        return cells;
+    }
     let value = |x: f64| format!("{}{unit}", power(factor * x).replace('-', "\u{2212}"));
     let share = |x: f64| if x < MOST_SHARE * d.scale { percent(x / d.scale) } else { "–".to_owned() };
     vec![
@@ -247,19 +264,7 @@ pub fn page(comparison: &Comparison, title: &str, names: [&str; 3]) -> Result<St
     html.push_str("</div>");
     html.push_str(horizon_note(comparison));
     html.push_str("</section>\n<section class=\"panel\"><h2>Differences</h2>\n");
-    html.push_str(&html_table(
-        &[
-            "Quantity",
-            "Root mean square",
-            "its share",
-            "Largest difference",
-            "its share",
-            "its time",
-            "Mean",
-            "Noise of the samples",
-        ],
-        comparison.channels.iter().map(quantity_row),
-    ));
+    html.push_str(&html_table(&QUANTITY_HEADING, comparison.channels.iter().map(quantity_row)));
     html.push_str(
         "<p class=\"note\">Simulated minus measured, over the rows compared; shares are of the largest measured value, of a position from its \
          mean. Times are those of the run. Rows before its t = 0, in which the block is held, are drawn but don’t count: a difference there is noise, or \

@@ -139,8 +139,8 @@ impl Seen {
         resamples(self.groups.len(), RESAMPLES, SEED).map(fit).collect()
     }
 
-    /// Intensity, cases and events: at each intensity, or in groups of equally many cases.
-    fn shares(&self) -> Vec<(f64, usize, usize)> {
+    /// At each intensity, or in groups of equally many cases where there are many intensities.
+    fn shares(&self) -> Shares {
         let mut sorted = self.observations.clone();
         sorted.sort_by(|a, b| a.intensity.total_cmp(&b.intensity));
         let count = |part: &[Observation]| {
@@ -151,10 +151,20 @@ impl Seen {
         };
         let stripes: Vec<_> = sorted.chunk_by(|a, b| a.intensity == b.intensity).map(count).collect();
         if stripes.len() <= MOST_STRIPES {
-            return stripes;
+            return Shares { of: stripes, grouped: false };
         }
-        sorted.chunks(sorted.len().div_ceil(GROUPS)).map(count).collect()
+        let cases = sorted.len();
+        let group = |k: usize| count(&sorted[k * cases / GROUPS..(k + 1) * cases / GROUPS]);
+        Shares { of: (0..GROUPS).map(group).collect(), grouped: true }
     }
+}
+
+/// Shares of cases with the event, as marked in the figure.
+struct Shares {
+    /// Intensity, cases and events; of a group its geometric mean.
+    of: Vec<(f64, usize, usize)>,
+    /// Whether they are those of groups of cases rather than of single intensities.
+    grouped: bool,
 }
 
 /// A curve with its confidence.
@@ -245,12 +255,24 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
         ],
         notes,
         summary: (
-            ["Study", "Intensity", "Median θ", "95 %", "Dispersion β", "95 %", "Cases", "Events", "Records"]
+            ["Study", "Intensity", "Median θ", "95 % of θ", "Dispersion β", "95 % of β", "Cases", "Events", "Records"]
                 .map(str::to_owned)
                 .into(),
             parts.rows,
         ),
     })
+}
+
+/// Says which cases each mark stands for, where it isn't those of one intensity.
+fn grouping(about: &str, cases: usize) -> String {
+    let size = match (cases / GROUPS, cases.div_ceil(GROUPS)) {
+        (size, same) if size == same => size.to_string(),
+        (least, most) => format!("{least} or {most}"),
+    };
+    format!(
+        "{about}: as there are more than {MOST_STRIPES} different intensities, the marks (fragility_data.csv) are shares in {GROUPS} groups \
+         of {size} cases each, in the order of their intensity and at the geometric mean of a group’s intensities."
+    )
 }
 
 /// The tables and sentences, as they grow.
@@ -290,11 +312,14 @@ impl Parts {
         for (number, (study, curve)) in studies.iter().zip(curves).enumerate() {
             let start = format!("{},{}", quoted(&study.name), quoted(label));
             let shares = curve.seen.shares();
-            for (x, cases, events) in &shares {
+            if shares.grouped {
+                self.notes.push(grouping(&study.about(label), curve.seen.observations.len()));
+            }
+            for (x, cases, events) in &shares.of {
                 let _ = writeln!(self.data, "{start},{x:?},{cases},{events}");
             }
             self.fit(study, label, curve, &start);
-            let points = shares.iter().map(|(x, cases, events)| (*x, *events as f64 / *cases as f64));
+            let points = shares.of.iter().map(|(x, cases, events)| (*x, *events as f64 / *cases as f64));
             if let Ok(fit) = &curve.fit {
                 let bands: Vec<(f64, f64, f64)> = grid
                     .iter()
@@ -423,6 +448,22 @@ mod tests {
         let study = Ensemble { name: "s".to_owned(), sweep, table };
         let asked = fragility.unwrap();
         Seen::of(&study, &asked, &asked.intensities[0]).groups.iter().map(Vec::len).collect()
+    }
+
+    #[test]
+    fn marks_are_of_each_intensity_or_of_groups_of_equally_many_cases() {
+        let shares = |intensities: u32| {
+            let observations = (0..2 * intensities)
+                .map(|k| Observation { intensity: 1.0 + f64::from(k % intensities), event: k % 2 == 0 })
+                .collect();
+            Seen { observations, groups: Vec::new(), names: Vec::new() }.shares()
+        };
+        let (few, many) = (shares(40), shares(41));
+        assert_eq!((few.of.len(), few.grouped), (40, false));
+        let cases: Vec<usize> = many.of.iter().map(|share| share.1).collect();
+        assert!(many.grouped && cases.iter().sum::<usize>() == 82, "{cases:?}");
+        assert!(cases.len() == 10 && cases.iter().all(|cases| [8, 9].contains(cases)), "{cases:?}");
+        assert!(grouping("s", 82).contains("10 groups of 8 or 9 cases") && grouping("s", 90).contains("of 9 cases"));
     }
 
     #[test]
