@@ -97,7 +97,8 @@ fn remarks(record: &Record) -> Vec<String> {
     let ([_, last], peak) = (at_the_end(record), record.displacement_peak().size);
     if last.abs() > DRIFTS * peak {
         remarks.push(format!(
-            "The record drifts: its displacement at the end is {:.0} % of its peak. A correction of the baseline takes this out (--baseline              linear, or baseline = \"linear\" in a scene), unless the ground itself was displaced for good.",
+            "The record drifts: its displacement at the end is {:.0} % of its peak. A correction of the baseline takes this out \
+             (--baseline linear, or baseline = \"linear\" in a scene), unless the ground itself was displaced for good.",
             100.0 * last.abs() / peak
         ));
     }

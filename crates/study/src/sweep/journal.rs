@@ -72,6 +72,14 @@ pub enum JournalError {
         /// Number of cases without a row.
         missing: u64,
     },
+    /// Rows of other cases than those of the shard.
+    #[error("{}: its rows aren't those of shard {shard}: one is missing, or of another shard; run it again", path.display())]
+    OtherRows {
+        /// The file.
+        path: PathBuf,
+        /// The shard.
+        shard: super::Shard,
+    },
     /// A table that can't be read back.
     #[error("{}: {source}", path.display())]
     Table {
@@ -325,7 +333,8 @@ pub fn merge(folders: &[PathBuf]) -> Result<(String, String), JournalError> {
         let (ended, running) = (folder.join(RESULTS), folder.join(JOURNAL));
         let place = if ended.exists() { ended } else { running };
         let rows = fs::read_to_string(&place).map_err(io_error(&place))?;
-        let (expected, there) = (shard.count(identity.cases()), sorted(std::iter::once(rows.as_str())).len() as u64);
+        let own = sorted(std::iter::once(rows.as_str()));
+        let (expected, there) = (shard.count(identity.cases()), own.len() as u64);
         let header = |text: &str| text.lines().next().unwrap_or_default().to_owned();
         if texts.first().is_some_and(|first: &String| header(first) != header(&rows)) {
             return Err(JournalError::Table { path: place, source: TableError::OtherColumns });
@@ -333,6 +342,13 @@ pub fn merge(folders: &[PathBuf]) -> Result<(String, String), JournalError> {
         if there < expected {
             return Err(JournalError::Unfinished { folder: folder.clone(), missing: expected - there });
         }
+        // The rows may have been copied from another shard, or edited.
+        let of_shard = shard.cases(identity.cases());
+        if there > expected || own.iter().map(|(case, _)| *case).ne(of_shard) {
+            return Err(JournalError::OtherRows { path: place, shard });
+        }
+        let first = rows.split_inclusive('\n').next().unwrap_or_default();
+        StudyTable::read(&table(first, &own)).map_err(|source| JournalError::Table { path: place, source })?;
         texts.push(rows);
         study.get_or_insert(identity);
     }

@@ -95,8 +95,13 @@ fn is_size(key: &str) -> bool {
     }
 }
 
-/// The observations of a study, with the group of each: cases that differ in the intensity and the size
-/// of the motion alone, such as the runs with one record.
+/// Whether a key names the record of a motion.
+fn is_record(key: &str) -> bool {
+    key.contains("motion.") && key.ends_with(".record")
+}
+
+/// The observations of a study, with the group of each: the cases under one record or, without records that vary, those that differ
+/// in the intensity and the size of the motion alone.
 struct Seen {
     observations: Vec<Observation>,
     /// By group, in the order of the groups' names.
@@ -113,8 +118,11 @@ impl Seen {
         // Over an output each case has its own intensity, and runs of one record belong together however
         // it is scaled.
         let scales = |key: &str| is_size(key) || asked.intensities.iter().any(|name| name == key);
+        // Of cases that differ in other properties, too, those under one record are still not independent.
+        let by_record = keys.iter().any(|key| is_record(key));
+        let tells = |key: &str| if by_record { is_record(key) } else { !scales(key) };
         let others: Vec<Vec<&str>> =
-            keys.iter().filter(|key| !scales(key)).map(|key| study.table.completed(key)).collect();
+            keys.iter().filter(|key| tells(key)).map(|key| study.table.completed(key)).collect();
         let mut groups: BTreeMap<String, Vec<Observation>> = BTreeMap::new();
         let mut observations = Vec::new();
         for (k, (cell, intensity)) in cells.iter().zip(&intensities).enumerate() {
@@ -225,8 +233,8 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
     let mut notes = parts.notes;
     notes.push(format!(
         "P(event | x) = Φ(ln(x/θ)/β) by maximum likelihood over all cases. Bands and intervals hold {} % of {RESAMPLES} fits to \
-         groups drawn with replacement; a group is the cases with one record (all keys but the intensity and the scale of the motion the same), as runs \
-         of one record are not independent.",
+         groups drawn with replacement. A group is the cases under one record, as these are not independent; in a study whose record doesn't \
+         vary, the cases whose keys but the intensity and the scale of the motion are the same.",
         100.0 * CONFIDENCE
     ));
     let event = asked.first().map(|asked| asked.event.clause()).unwrap_or_default();
@@ -475,7 +483,9 @@ mod tests {
         assert_eq!(groups(peaks, "\"pga\""), [4, 4, 4]);
         assert_eq!(groups(scales, "\"pga\""), [4, 4, 4]);
         // A key that doesn't scale the motion: other blocks under the same record.
-        assert_eq!(groups("block.b.mass = [\"1 kg\", \"2 kg\"]", "\"pga\""), [1; 6]);
+        assert_eq!(groups("block.b.mass = [\"1 kg\", \"2 kg\"]", "\"pga\""), [2; 3]);
+        // Under one record, whatever else varies.
+        assert_eq!(groups(&format!("{peaks}\ncontact.c.friction = [0.4, 0.5]"), "\"ground.motion.x.peak\""), [8, 8, 8]);
         // The time of the peak of a wavelet is none of its size.
         assert_eq!(groups("signal.w.peak = [\"1 s\", \"2 s\"]", "\"pga\""), [1; 6]);
     }
