@@ -29,7 +29,7 @@ impl FitKey {
     /// use teeter_study::fit::FitKey;
     /// assert_eq!(FitKey::read("beam.table.thickness=1..2 mm").unwrap().text(1.5), "1.5 mm");
     /// assert!(FitKey::read("contact.feet.restitution=0.8..0").is_err());
-    /// assert!(FitKey::read("time.step=1..5 ms").is_err());
+    /// assert!(FitKey::read("time.step=1..5 ms").is_err() && FitKey::read("title=0..1").is_err());
     /// ```
     pub fn read(text: &str) -> Result<Self, String> {
         const EXAMPLE: &str =
@@ -38,7 +38,7 @@ impl FitKey {
         let Some((key, (low, high))) = parts.filter(|(key, _)| !key.is_empty()) else {
             return Err(format!("{EXAMPLE}; files come before --vary"));
         };
-        if ["output.", "time.", "solver."].iter().any(|table| key.starts_with(table)) {
+        if key == "title" || ["output.", "time.", "solver."].iter().any(|table| key.starts_with(table)) {
             return Err(format!(
                 "{key} is no property of what was measured: vary keys of blocks, contacts, beams or loads"
             ));
