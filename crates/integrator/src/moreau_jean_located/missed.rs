@@ -89,6 +89,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         for k in 0..self.near.len() {
             let end = self.near[k];
             let Some(&start) = find(&self.step.start, end.id) else { continue };
+            let tolerance = tolerance + self.depth_of_pair(&start);
             let known_inside = |candidate: &Candidate<D>| candidate.gap < -tolerance;
             if find(&work.candidates, end.id).is_some_and(known_inside) {
                 continue;
@@ -120,6 +121,17 @@ impl<const D: usize> MoreauJeanLocated<D> {
             };
         }
         Ok(first)
+    }
+
+    /// How deep the closed contacts between the bodies of a candidate are at the start, m: as deep, another one isn't in the surface any
+    /// further. Where a corner that has sunk in by nanometres slides off a side, the end of that side would strike what it carries.
+    fn depth_of_pair(&self, candidate: &Candidate<D>) -> f64 {
+        let bodies = |of: &Candidate<D>| of.sides.map(|side| side.body);
+        let [a, b] = bodies(candidate);
+        let is_of_pair = |of: &&Candidate<D>| bodies(of) == [a, b] || bodies(of) == [b, a];
+        let closed = |of: &&Candidate<D>| self.step.closed.binary_search(&of.id).is_ok();
+        let pressed = self.step.start.iter().filter(is_of_pair).filter(closed);
+        pressed.fold(0.0, |deepest, of| deepest.max(-of.gap))
     }
 
     /// A time soon after a contact touches, at the part `touches` of the attempt of `h` (s), at which it is inside its

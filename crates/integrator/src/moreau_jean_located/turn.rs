@@ -16,6 +16,9 @@ const ALIKE: f64 = 1e-6;
 /// A slide has stopped where its speed is below this part of the same.
 const STOPPED: f64 = 1e-6;
 
+/// Nor is one of so many times the speed that is rounding, which grows with that of the fastest body.
+const STILL: f64 = 4.0;
+
 /// A slide that stops is followed to this part of the way that is left: the step must end before it does.
 const AIM: f64 = 0.999;
 
@@ -126,7 +129,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             }
             let start = self.step.slides[i];
             let speed = start.norm();
-            if speed <= 4.0 * contact.still {
+            if speed <= STILL * contact.still {
                 continue;
             }
             let change = self.step.stage.velocity(i, &self.by_forces)?;
@@ -137,7 +140,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
             if speed <= SLOW * change {
                 continue;
             }
-            let slide = Slide { id: contact.id, direction: start / speed, none: STOPPED * change, seen: (0.0, speed) };
+            // What is slower than that sticks by its state, so a slide can't be followed any further.
+            let none = (STOPPED * change).max(STILL * contact.still);
+            let slide = Slide { id: contact.id, direction: start / speed, none, seen: (0.0, speed) };
             if slide.left(&self.step) <= 0.0 {
                 self.slides.push(slide);
             }

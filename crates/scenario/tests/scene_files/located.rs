@@ -470,3 +470,46 @@ fn flush_parts_land_as_one_in_the_closed_scheme() {
         }
     }
 }
+
+/// Rounding of speeds, below which a contact sticks by its state, grows with the fastest body: the end of a slide must be found while
+/// another block slides faster, far away.
+#[test]
+fn a_slide_ends_in_time_while_another_block_slides() {
+    let slab = |name: &str, at: f64, friction: f64| {
+        format!(
+            "[block.{name}]\ndensity = '1000 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.3 m'\nheight = '0.05 m'\non = 'ground'\nat = '{at} m'\n\
+             [contact.c-{name}]\nbetween = ['{name}', 'ground']\nfriction = {friction}\n"
+        )
+    };
+    let slid = |more: &str| {
+        let text = format!(
+            "[time]\nend = '1 s'\n[world]\ngravity = '9.81 m/s^2'\n[ground]\n\
+             motion = {{ displacement = ['20 mm', '0 mm'], signal = 's' }}\n\
+             [signal.s]\nshape = 'harmonic'\nfrequency = '3 Hz'\n{}{more}",
+            slab("a", 0.0, 0.3)
+        );
+        run(&text, "50 us").0.state.q[0]
+    };
+    let (alone, beside) = (slid(""), slid(&slab("b", 2.0, 0.2)));
+    assert!((alone - beside).abs() < 1e-8, "{alone} {beside}");
+}
+
+/// A corner that rests on a side has sunk in by nanometres; where it slides off the end of that, the end doesn't strike the edge that it
+/// carries. The angle is that of an integration without contact from there on, to rounding.
+#[test]
+fn a_corner_slides_off_a_side_without_a_blow() {
+    const TEXT: &str = "[time]\nend = '0.1 s'\n[world]\ngravity = '9.81 m/s^2'\n\
+        [block.table]\ndensity = '2000 kg/m^3'\ndepth = '0.1 m'\nwidth = '1 m'\nheight = '0.5 m'\nposition = ['-0.5 m', '-0.25 m']\n\
+        fixed = true\n\
+        [block.b]\ndensity = '1000 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.212 m'\nheight = '0.13 m'\n\
+        position = ['0.08567437914076545 m', '0.08233793215604149 m']\nangle = '9.95 deg'\n\
+        velocity = ['0.8716544132435398 m/s', '0.045655445778975075 m/s']\nspin = '0.49 rad/s'\n\
+        [contact.c]\nbetween = ['b', 'table']\nfriction = 0\n";
+    for step in ["2 ms", "1 ms", "250 us"] {
+        let (simulation, seen) = run(TEXT, step);
+        assert!(seen.impacts.is_empty(), "{step}: {:?}", seen.impacts);
+        let block = simulation.layout.blocks.iter().find(|block| block.name == "b").unwrap().range.clone();
+        let phi = simulation.state.q[block][2];
+        assert!((phi - 0.169_296_9).abs() < 2e-6, "{step}: {phi}");
+    }
+}

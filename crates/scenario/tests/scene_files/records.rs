@@ -223,7 +223,7 @@ fn what_a_record_leaves_or_lacks_gets_a_warning_or_a_note() {
         about.map(|found| found.rule.clone()).collect::<Vec<_>>().join("; ")
     };
     let drifts = warned("", "t,a\n0,0\n0.5,1\n1,0\n");
-    assert!(drifts.contains("ends at 1.0000 s with a velocity of 5.000e-1 m/s, 100 %"), "{drifts}");
+    assert!(drifts.contains("ends at 1.0000 s with a velocity of 500 mm/s, 100 %"), "{drifts}");
     assert_eq!(warned("", "t,a\n0,0\n0.5,1\n1,0\n1.5,-1\n2,0\n"), "");
     assert!(warned("", "t,a\n0,0\n1,0\n").contains("0 throughout"));
     let long: String =

@@ -201,7 +201,7 @@ fn a_gap_tolerance_at_which_blocks_hover_is_refused_or_warned_of() {
     let refused = of("0.2 m").map(|_| ()).expect_err("accepted");
     says(
         &refused,
-        &["time.gap_tolerance", "6.7e0 of the shortest side of a block, 0.03 m", "float that far above", "3e-5 m"],
+        &["time.gap_tolerance", "6.7 of the shortest side of a block, 0.03 m", "float that far above", "3e-5 m"],
     );
     assert!(of("31 um").is_err());
     let warns = |given: &str| {

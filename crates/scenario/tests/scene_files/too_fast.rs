@@ -70,7 +70,7 @@ fn tables_with_more_in_a_step_than_it_shows_are_warned_of() {
     let slow = table((0..=600).map(|k| (f64::from(k), f64::from(k).sin())));
     let found = resolved(&format!("{BLOCK}{push}"), &slow);
     assert!(found.warnings.is_empty() && found.notes.len() == 1, "{:?} {:?}", found.warnings, found.notes);
-    assert!(found.notes[0].rule.contains("extends to 600 s, 1.2e3 times the run"), "{}", found.notes[0].rule);
+    assert!(found.notes[0].rule.contains("extends to 600 s, 1200 times the run"), "{}", found.notes[0].rule);
     let found = resolved(&format!("{BLOCK}{push}"), &format!("t [ms], F\n{slow}"));
     assert!(found.notes.is_empty(), "with its unit it is no longer than the run");
 }
