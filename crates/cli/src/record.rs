@@ -123,12 +123,6 @@ impl<'a> Held<'a> {
         &self.scene.record
     }
 
-    /// Velocity and displacement after the last value.
-    fn left_over(&self) -> [f64; 2] {
-        let (velocities, displacements) = self.record().motion();
-        [velocities, displacements].map(|values| values.last().copied().unwrap_or(0.0))
-    }
-
     /// The corrections in words; empty for none.
     fn corrections(&self) -> String {
         self.keys.iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ")
@@ -163,7 +157,7 @@ impl<'a> Held<'a> {
     fn text(&self) -> String {
         let (record, numbers) = (self.record(), &self.numbers);
         let [a, v, d] = [record.acceleration_peak(), record.velocity_peak(), record.displacement_peak()];
-        let [velocity, displacement] = self.left_over();
+        let [velocity, displacement] = self.record().at_the_end();
         let mut lines = vec![
             [self.name, &numbers.station, &numbers.description]
                 .into_iter()
@@ -225,7 +219,7 @@ impl<'a> Held<'a> {
 
     fn json(&self) -> Value {
         let record = self.record();
-        let [velocity, displacement] = self.left_over();
+        let [velocity, displacement] = self.record().at_the_end();
         let mut value = serde_json::to_value(&self.numbers).unwrap_or_default();
         let peaks = [record.acceleration_peak(), record.velocity_peak(), record.displacement_peak()];
         let periods = spectrum_periods();

@@ -145,6 +145,12 @@ impl Record {
         std::iter::once((0.0, 0.0)).chain(ends).unzip()
     }
 
+    /// Velocity (m/s) and displacement (m) at the time of the last value, from rest.
+    #[must_use]
+    pub fn at_the_end(&self) -> [f64; 2] {
+        self.segments().last().map_or([0.0; 2], |last| [last.velocity(last.h), last.displacement(last.h)])
+    }
+
     /// Arias intensity π/(2g) ∫ a² dt, m/s, g being [`STANDARD_GRAVITY`] (A. Arias, "A measure of
     /// earthquake intensity", in Seismic Design for Nuclear Power Plants, MIT Press 1970). The
     /// integral is exact for the linear segments, h (a₀² + a₀a₁ + a₁²)/3 each.

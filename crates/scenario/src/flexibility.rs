@@ -124,12 +124,9 @@ impl Flexibility {
         let advice = match reduction {
             Some(_) if full.0 <= MOST_MISSING => {
                 // A basis contains all smaller ones.
-                let basis = Beam::new(of.clone()).ok().and_then(|beam| {
-                    let most = MOST_MODES.min(beam.free_dofs());
-                    Some((Reduction::Modes(most).basis(&beam).ok()?, beam, most))
-                });
-                let count = basis.and_then(|(basis, beam, most)| {
-                    let modes = |count: usize| worst(&|at| of_modes(&beam, &basis, count, at, mass));
+                let most = MOST_MODES.min(own.free_dofs());
+                let count = Reduction::Modes(most).basis(&own).ok().and_then(|basis| {
+                    let modes = |count: usize| worst(&|at| of_modes(&own, &basis, count, at, mass));
                     doublings(2).take_while(|&count| count <= most).find(|&count| enough(modes(count)))
                 });
                 match count {

@@ -16,7 +16,8 @@ const ALIKE: f64 = 1e-6;
 /// A slide has stopped where its speed is below this part of the same.
 const STOPPED: f64 = 1e-6;
 
-/// Nor is one of so many times the speed that is rounding, which grows with that of the fastest body.
+/// Up to so many times the speed that is rounding a slide isn't looked at, and one that stops has stopped. What is rounding grows with
+/// the speed of the fastest contact.
 const STILL: f64 = 4.0;
 
 /// A slide that stops is followed to this part of the way that is left: the step must end before it does.
@@ -140,7 +141,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             if speed <= SLOW * change {
                 continue;
             }
-            // What is slower than that sticks by its state, so a slide can't be followed any further.
+            // What is slower than rounding sticks by its state, so that a slide can't be followed down to a lower speed.
             let none = (STOPPED * change).max(STILL * contact.still);
             let slide = Slide { id: contact.id, direction: start / speed, none, seen: (0.0, speed) };
             if slide.left(&self.step) <= 0.0 {

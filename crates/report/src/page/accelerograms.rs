@@ -94,7 +94,7 @@ fn remarks(record: &Record) -> Vec<String> {
     if record.assumes_its_unit() {
         remarks.push("The file names no unit: its values are taken as m/s²; --unit gives another.".to_owned());
     }
-    let ([_, last], peak) = (at_the_end(record), record.displacement_peak().size);
+    let ([_, last], peak) = (record.at_the_end(), record.displacement_peak().size);
     if last.abs() > DRIFTS * peak {
         remarks.push(format!(
             "The record drifts: its displacement at the end is {:.0} % of its peak. A correction of the baseline takes this out \
@@ -103,12 +103,6 @@ fn remarks(record: &Record) -> Vec<String> {
         ));
     }
     remarks
-}
-
-/// Velocity (m/s) and displacement (m) after the last value.
-fn at_the_end(record: &Record) -> [f64; 2] {
-    let (velocities, displacements) = record.motion();
-    [velocities, displacements].map(|values| values.last().copied().unwrap_or(0.0))
 }
 
 /// Histories and spectra side by side where there is room.
@@ -208,8 +202,8 @@ const MEASURES: [Measure; 11] = [
     Measure::alone("Time of the peak displacement", "s", |_, record| record.displacement_peak().time),
     Measure::of("Arias intensity", "m/s", |of, _| of.arias_intensity),
     Measure::of("Significant duration, 5–95 %", "s", |of, _| of.significant_duration),
-    Measure::alone("Velocity at the end", "m/s", |_, record| at_the_end(record)[0]),
-    Measure::alone("Displacement at the end", "m", |_, record| at_the_end(record)[1]),
+    Measure::alone("Velocity at the end", "m/s", |_, record| record.at_the_end()[0]),
+    Measure::alone("Displacement at the end", "m", |_, record| record.at_the_end()[1]),
 ];
 
 /// The section of the page with a table of measures and both figures; empty without records. `named`: each with the motion that it
@@ -276,7 +270,7 @@ mod tests {
         // There and back again.
         let wave = (0..=400).map(|k| (0.1 * std::f64::consts::PI * f64::from(k)).sin() * f64::from(200 - k).signum());
         let still = Record::new("", 0.01, wave.collect()).unwrap();
-        let [_, last] = at_the_end(&still);
+        let [_, last] = still.at_the_end();
         assert!(last.abs() < 0.1 * still.displacement_peak().size && remarks(&still).is_empty(), "{last}");
     }
 

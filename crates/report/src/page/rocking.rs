@@ -12,8 +12,8 @@ pub struct HalfCycle {
     pub body: String,
     /// When φ is 0, s.
     pub t: f64,
-    /// ω, relative to what carries the block, right before and right after the impact of the corner that comes down, rad/s; none where no impact is near the
-    /// passage, or there were too many impacts to keep them all.
+    /// ω, relative to what carries the block, right before and right after the impact of the corner that comes
+    /// down, rad/s; none where no impact is near the passage, or there were too many impacts to keep them all.
     ///
     /// The two are those at the ends of the step of that impact, wherever the crossing is: a step of gravity is all that
     /// is between them but for the impact. A beam that gives way spreads the block's loss over the half cycle, so the

@@ -175,7 +175,7 @@ impl RecordScene {
         }
         let times = (0..values.len()).map(|k| record.time(k)).collect();
         let table = Arc::new(Table::new(times, values)?);
-        let last_velocity = record.motion().0.last().copied().unwrap_or(0.0);
+        let [last_velocity, _] = record.at_the_end();
         let largest_velocity = record.velocity_peak().size;
         Ok(Self { path: path.to_owned(), file: file.to_owned(), record, last_velocity, largest_velocity, table })
     }
