@@ -14,6 +14,7 @@ use crate::{
     Contact, ContactStage, Keep, Model, MoreauJeanClosedSettings, Part, STEP_ROUNDING, Scheme, SettingError, State,
     StepError, StepReport, StepSpan, Weights, Workspace,
 };
+use impact::Strike;
 use locate::Hit;
 pub(crate) use locate::rate_at;
 use teeter_contact::Outcome;
@@ -80,6 +81,8 @@ pub struct MoreauJeanLocated<const D: usize> {
     hits: Vec<Hit>,
     /// Slides that stop within the attempt.
     slides: Vec<Slide<D>>,
+    /// Contacts that strike at an uncertain time.
+    strikes: Vec<Strike<D>>,
     ids: Vec<ContactId>,
     near: Candidates<D>,
     /// What is inside at a time within an attempt.
@@ -136,6 +139,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             impact: ContactStage::new(),
             hits: Vec::new(),
             slides: Vec::new(),
+            strikes: Vec::new(),
             ids: Vec::new(),
             near: Vec::new(),
             on_the_way: Vec::new(),
@@ -184,6 +188,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.one.reserve(model);
         self.hits.reserve(contacts);
         self.slides.reserve(contacts);
+        self.strikes.reserve(contacts.min(crate::stage::RESERVED_CONTACTS));
         self.ids.reserve(contacts);
         self.near.reserve(contacts);
         // Few of many contacts are inside on the way.

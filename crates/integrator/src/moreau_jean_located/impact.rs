@@ -7,13 +7,48 @@ use crate::{
     ContactError, Keep, Mismatch, Model, Over, PhaseEnd, PhaseKind, Responses, Rule, State, StepError, Vector,
     Workspace,
 };
-use teeter_detect::Candidate;
+use teeter_detect::{Anchor, BodyId, Candidate};
 
 /// Contacts with a gap of up to so many tolerances touch.
 const TOUCHING: f64 = 10.0;
 
 /// The time of an impact is uncertain by no more than this part of the scheme's step: a larger gap of a closed contact is not drift.
 const HIDDEN: f64 = 0.01;
+
+/// A contact that strikes at a time that is uncertain, by what closed contacts of its bodies have drifted from their surfaces.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Strike<const D: usize> {
+    sides: [Anchor<D>; 2],
+    /// Its normal velocity, m/s: below 0.
+    rate: f64,
+    /// How far its bodies may be off, m.
+    shift: f64,
+    /// By what angle they may be off, rad.
+    turn: f64,
+}
+
+impl<const D: usize> Strike<D> {
+    /// By how much the time (s) is uncertain at which another point of one of its bodies strikes, in comparison.
+    fn uncertainty(&self, side: &Anchor<D>) -> Option<f64> {
+        let own = self.sides.iter().find(|own| own.body == side.body)?;
+        Some((self.shift + self.turn * (side.point - own.point).norm()) / -self.rate)
+    }
+}
+
+/// How far (m) a body's closed contacts have drifted from their surfaces, and by what angle (rad) they may have turned it: the spread of
+/// their gaps over that of their points.
+fn drift<const D: usize>(body: BodyId, closed: &[Candidate<D>]) -> (f64, f64) {
+    let of_body =
+        || closed.iter().filter_map(|of| of.sides.iter().find(|side| side.body == body).map(|side| (of, side)));
+    let Some((_, first)) = of_body().next() else { return (0.0, 0.0) };
+    let distance = |from: &Anchor<D>, to: &Anchor<D>| (to.point - from.point).norm();
+    let far = of_body().map(|(_, side)| side).max_by(|a, b| distance(first, a).total_cmp(&distance(first, b)));
+    let spread = of_body().map(|(_, side)| distance(far.unwrap_or(first), side)).fold(0.0, f64::max);
+    let gaps = || of_body().map(|(of, _)| of.gap);
+    let (least, most) = (gaps().fold(f64::INFINITY, f64::min), gaps().fold(f64::NEG_INFINITY, f64::max));
+    let turn = if spread > 0.0 { (most - least) / spread } else { 0.0 };
+    (least.abs().max(most.abs()), turn)
+}
 
 impl<const D: usize> MoreauJeanLocated<D> {
     /// Lets the contacts that touch at `from` strike, at time `end` (s): its velocities and what is
@@ -64,16 +99,15 @@ impl<const D: usize> MoreauJeanLocated<D> {
         let touching = TOUCHING * self.tolerance(&from.q);
         work.locate(model, &from.q, &self.step.closed, &mut self.near)?;
         work.detect(model, &from.q, touching)?;
-        let hidden = self.hidden_time(model, from, work)?;
-        if hidden > 0.0 {
+        self.find_uncertain_strikes(model, from, work)?;
+        if !self.strikes.is_empty() {
             // Two bodies may approach each other; a beam is not faster than what rocks on it.
-            let reach = 2.0 * hidden * self.fastest(model, &from.v);
+            let reach = 2.0 * HIDDEN * from.dt * self.fastest(model, &from.v);
             work.detect(model, &from.q, touching.max(reach))?;
             let (mut candidates, mut kept) = (std::mem::take(&mut work.candidates), 0);
             for k in 0..candidates.len() {
                 let candidate = candidates[k];
-                let is_near = candidate.gap <= touching;
-                if is_near || -rate_at(&mut self.one, model, &from.q, &candidate, &from.v)? * hidden >= candidate.gap {
+                if candidate.gap <= touching || self.strikes_along(model, from, &candidate)? {
                     candidates[kept] = candidate;
                     kept += 1;
                 }
@@ -100,32 +134,44 @@ impl<const D: usize> MoreauJeanLocated<D> {
         closed.try_for_each(add)
     }
 
-    /// By how much the time of the impact is uncertain, s: the distance that closed contacts of the striking bodies have drifted from their
-    /// surfaces, over the velocity of approach; 0 without closed contacts.
-    ///
-    /// What touches within that time strikes in the same impact. Points on one line under a base land together; but where the pivot has
-    /// sunk in by some nanometres, the points nearer to it would strike first, and take part of the blow.
-    fn hidden_time(&mut self, model: &Model<D>, from: &State, work: &Workspace<D>) -> Result<f64, Mismatch> {
+    /// Finds the contacts whose time of impact is uncertain: bodies that take part have closed contacts, which have drifted from their
+    /// surfaces.
+    fn find_uncertain_strikes(&mut self, model: &Model<D>, from: &State, work: &Workspace<D>) -> Result<(), Mismatch> {
+        self.strikes.clear();
         let touching = TOUCHING * self.tolerance(&from.q);
-        let mut hidden = 0.0_f64;
         for candidate in &work.candidates {
-            let shares = |closed: &&Candidate<D>| {
-                let mut bodies = candidate.sides.iter().map(|side| side.body).filter(|body| model.moves(*body));
-                bodies.any(|body| closed.sides.iter().any(|side| side.body == body))
-            };
-            let drift = self.near.iter().filter(shares).map(|closed| closed.gap.abs()).fold(0.0, f64::max);
-            let is_known = drift == 0.0 || self.step.closed.binary_search(&candidate.id).is_ok();
+            let (mut shift, mut turn) = (0.0_f64, 0.0);
+            for side in candidate.sides.iter().filter(|side| model.moves(side.body)) {
+                let drift = drift(side.body, &self.near);
+                shift = shift.max(drift.0);
+                turn += drift.1;
+            }
+            let is_known = shift == 0.0 || self.step.closed.binary_search(&candidate.id).is_ok();
             // A beam takes each blow by itself.
             if is_known || self.is_with_elastic(model, &candidate.sides.map(|side| side.body)) {
                 continue;
             }
             let rate = rate_at(&mut self.one, model, &from.q, candidate, &from.v)?;
             if leaves(-rate, || self.one.speed(0, &from.v)) {
-                hidden = hidden.max(drift.max(touching) / -rate);
+                self.strikes.push(Strike { sides: candidate.sides, rate, shift: shift.max(touching), turn });
             }
         }
+        Ok(())
+    }
+
+    /// Whether an open contact would touch within the time by which an impact of one of its bodies is uncertain: it strikes in the same
+    /// impact.
+    ///
+    /// Points on one line under a base land together, and so do the corners of a side that meets a wall flush. But where the pivot has sunk
+    /// in by some nanometres, the points nearer to it would strike first, and take part of the blow; where a block has come to rest on one
+    /// corner deeper than on the other, one corner of its side would be first.
+    fn strikes_along(&mut self, model: &Model<D>, from: &State, candidate: &Candidate<D>) -> Result<bool, Mismatch> {
         // More is not drift.
-        Ok(if hidden <= HIDDEN * from.dt { hidden } else { 0.0 })
+        let longest = HIDDEN * from.dt;
+        let moving = || candidate.sides.iter().filter(|side| model.moves(side.body));
+        let times = self.strikes.iter().flat_map(|strike| moving().filter_map(|side| strike.uncertainty(side)));
+        let time = times.filter(|time| *time <= longest).fold(0.0, f64::max);
+        Ok(time > 0.0 && -rate_at(&mut self.one, model, &from.q, candidate, &from.v)? * time >= candidate.gap)
     }
 
     /// Gives each contact its law.

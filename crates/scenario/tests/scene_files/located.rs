@@ -7,9 +7,9 @@ use teeter_scenario::simulation::Simulation;
 
 /// The impacts of a run, and how its steps were divided.
 #[derive(Default)]
-struct Seen {
+pub(super) struct Seen {
     /// Time, normal velocity before and after of each contact that came in at more than 1 µm/s.
-    impacts: Vec<(f64, f64, f64)>,
+    pub(super) impacts: Vec<(f64, f64, f64)>,
     most_phases: usize,
 }
 
@@ -26,7 +26,7 @@ impl Observer<2> for Seen {
 
 const G: f64 = 9.81;
 
-fn run(scene: &str, step: &str) -> (Simulation, Seen) {
+pub(super) fn run(scene: &str, step: &str) -> (Simulation, Seen) {
     let sets = [("time.scheme", "moreau-jean-located"), ("time.step", step)];
     let sets: Vec<(String, String)> =
         sets.into_iter().map(|(key, value)| (key.to_owned(), format!("\"{value}\""))).collect();

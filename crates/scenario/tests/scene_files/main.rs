@@ -7,6 +7,7 @@ mod crowds;
 mod driven;
 mod event_driven;
 mod feet;
+mod flush;
 mod located;
 mod many;
 mod modes;
