@@ -323,18 +323,21 @@ impl<const D: usize> MoreauJeanLocated<D> {
             };
             // Up to the end, or to the next impact, a slide may stop.
             let reached = found.map_or(rest, |tau| StepSpan { end: from.t + tau, h: tau, ..rest });
-            let (outcome, stops) = match too_many {
+            // Nothing stops or ends before what strikes at once.
+            let at_once = found == Some(0.0);
+            let (outcome, stops) = match too_many || at_once {
                 true => (outcome, None),
                 false => self.find_stop(model, from, &reached, outcome, work)?,
             };
             // A contact may come to the end of its surface before.
             let attempted = stops.map_or(reached, |tau| StepSpan { end: from.t + tau, h: tau, ..rest });
-            let (outcome, leaves) = match too_many {
-                true => {
-                    self.find_what_leaves(model, rest.h, work)?;
-                    (outcome, None)
-                }
-                false => self.find_end(model, from, &attempted, outcome, work)?,
+            let (outcome, leaves) = if too_many {
+                self.find_what_leaves(model, rest.h, work)?;
+                (outcome, None)
+            } else if at_once {
+                (outcome, None)
+            } else {
+                self.find_end(model, from, &attempted, outcome, work)?
             };
             let stops = leaves.or(stops);
             if let Some(tau) = stops {

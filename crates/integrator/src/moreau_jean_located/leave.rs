@@ -1,6 +1,7 @@
 //! When a contact that presses comes to the end of its surface within a step.
 
 use super::MoreauJeanLocated;
+use super::locate::is_time;
 use crate::{Mismatch, Model, State, StepError, StepSpan, Workspace};
 use teeter_contact::Outcome;
 
@@ -39,6 +40,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
             if past > 0 && attempted - tau <= AT_ONCE * part.h {
                 // What leaves at the very end does so between two parts.
                 return Ok((outcome_of_it, (attempted < part.h).then_some(attempted)));
+            }
+            if !is_time(tau, part.start) {
+                break;
             }
             outcome_of_it = self.attempt_up_to(model, from, part, tau, work)?;
             if outcome_of_it.is_some_and(|outcome| !outcome.converged()) {

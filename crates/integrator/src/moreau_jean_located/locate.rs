@@ -53,6 +53,11 @@ fn rounding(q: &[f64]) -> f64 {
     ROUNDING * q.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()))
 }
 
+/// Whether a part of a step is long enough (s) to move time on from its `start`: times are known no better.
+pub(super) fn is_time(tau: f64, start: f64) -> bool {
+    tau > 4.0 * f64::EPSILON * start.abs()
+}
+
 /// Attempts at locating an impact: two or three do, where no other contact opens or closes on the
 /// way.
 const ATTEMPTS: usize = 40;
@@ -149,8 +154,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         let mut tau = self.hits.iter().map(|hit| hit.touches(rest.h)).fold(rest.h, f64::min);
         let mut outcome = None;
         for attempt in 1..=ATTEMPTS {
-            // Times are known no better.
-            if !(tau > 4.0 * f64::EPSILON * rest.start.abs()) {
+            if !is_time(tau, rest.start) {
                 break;
             }
             let part = StepSpan { start: rest.start, end: rest.start + tau, h: tau };

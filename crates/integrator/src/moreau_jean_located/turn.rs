@@ -1,6 +1,7 @@
 //! When a slide stops, or turns about, within a step.
 
 use super::MoreauJeanLocated;
+use super::locate::is_time;
 use crate::closed_step::ClosedStep;
 use crate::contact::tangential;
 use crate::{ContactState, Mismatch, Model, State, StepError, StepSpan, Vector, Workspace};
@@ -71,6 +72,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
         let (mut sliding, mut stopped) = (0.0, part.h);
         let mut tau = 0.5 * part.h;
         for _ in 0..ATTEMPTS {
+            if !is_time(tau, part.start) {
+                break;
+            }
             let outcome = self.attempt_up_to(model, from, part, tau, work)?;
             let step = &self.step;
             let left = |slide: &Slide<D>| slide.left(step);

@@ -513,3 +513,24 @@ fn a_corner_slides_off_a_side_without_a_blow() {
         assert!((phi - 0.169_296_9).abs() < 2e-6, "{step}: {phi}");
     }
 }
+
+/// What strikes at the start of a step, or a rounding after it, leaves no time in which a slide could be seen to stop. The place is that
+/// of `event-driven`.
+#[test]
+fn a_slide_that_stops_where_something_strikes_at_once_is_no_part_of_a_step() {
+    const TEXT: &str = "[time]\nend = '0.4 s'\n[ground]\nincline = '10.6624 deg'\n\
+        [block.b0]\ndensity = '1386.2549 kg/m^3'\ndepth = '0.1 m'\nradius = '0.0954 m'\non = 'ground'\nat = '0 m'\n\
+        velocity = ['0.1792 m/s', '0 m/s']\n\
+        [force.f0]\non = 'b0'\nforce = ['-7.6689 N', '-4.0258 N']\ncouple = '0.6129 N m'\n\
+        [block.b1]\ndensity = '2837.6261 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.3663 m'\nheight = '0.2851 m'\n\
+        on = 'b0'\nat = '-0.0038 m'\nvelocity = ['1.3512 m/s', '0 m/s']\n\
+        [block.b2]\ndensity = '709.3015 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.2357 m'\nheight = '0.2085 m'\nchamfer = '0.028 m'\n\
+        on = 'b1'\nat = '-0.0088 m'\n\
+        [contact.c]\nbetween = ['*', '*']\nfriction = 0.2619\nlaw = 'newton'\nrestitution = 0.6\n";
+    for step in ["1 ms", "500 us"] {
+        let (simulation, _) = run(TEXT, step);
+        let block = simulation.layout.blocks.iter().find(|block| block.name == "b1").unwrap().range.clone();
+        let x = simulation.state.q[block.start];
+        assert!((x - 0.343_225).abs() < 2e-5, "{step}: {x}");
+    }
+}
