@@ -75,6 +75,16 @@ pub(crate) fn near_outline(feature: CornerOnSide, owner: &Outline<'_>, other: &O
     gap.is_finite().then(|| Touch { feature: feature.number(), points, normal, gap, room: f64::INFINITY })
 }
 
+/// The number of the side or corner of another shape's core that is nearest to a corner.
+pub(crate) fn piece(feature: CornerOnSide, owner: &Outline<'_>, other: &Outline<'_>) -> Option<u32> {
+    let corner = owner.corners.get(feature.corner.checked_sub(owner.first)?)?;
+    let number = match nearest(other, &other.frame.local(&owner.frame.point(corner)))?.on {
+        On::Side(k) => 2 * k,
+        On::Corner(k) => 2 * k + 1,
+    };
+    u32::try_from(number).ok()
+}
+
 /// The side along whose normal two cores that overlap are least deep in each other.
 #[derive(Clone, Copy)]
 enum LeastDeep {

@@ -4,7 +4,7 @@ use crate::broad::{Groups, Near, NearPair};
 use crate::feet::{self, SurfacePair};
 use crate::placed::{BodyFrame, Places, Shapes, outward};
 use crate::profile::{self, Profile, ProfilePair};
-use crate::round::{near_outline, round};
+use crate::round::{near_outline, piece, round};
 use crate::sides::{self, OnSide, SidePair};
 use crate::touch::{CornerOnSide, Side, Touch, Touches, corner_on_side, polygons};
 use crate::{
@@ -362,6 +362,20 @@ impl ShapeDetector {
         corner_on_side(feature, (corner, place[0]), &Side { local, ends, normal: outward(&ends[0], &ends[1]) })
     }
 
+    /// The number of the piece on which a corner of a round shape is; `None` of another contact.
+    fn piece(&self, at: &dyn Geometry<2>, id: ContactId) -> Option<u32> {
+        let (_, members) = self.shapes_of(id)?;
+        let feature = CornerOnSide::from_number(id.point());
+        if !feature.round {
+            return None;
+        }
+        let [owner, other] = if feature.owner == 0 { members } else { [members[1], members[0]] };
+        let parts = [self.shapes.part_of(owner, feature.corner)?, self.shapes.part_of(other, feature.side)?];
+        let bodies = [owner, other].map(|member| BodyFrame::of(self.shapes.members[member].body, at));
+        let [owner, other] = [0, 1].map(|i| self.shapes.outline(parts[i], bodies[i]));
+        piece(feature, &owner, &other)
+    }
+
     /// Whether neither of two parts is round.
     fn are_sharp(&self, i: usize, j: usize) -> bool {
         self.shapes.parts[i].radius + self.shapes.parts[j].radius == 0.0
@@ -433,6 +447,14 @@ impl ContactDetector<2> for ShapeDetector {
             out.push(candidate);
             rooms.push(room);
         }
+    }
+
+    fn pieces(&self, at: &dyn Geometry<2>, ids: &[ContactId], pieces: &mut Vec<u32>) {
+        pieces.clear();
+        if self.shapes.parts.iter().all(|part| part.radius == 0.0) {
+            return;
+        }
+        pieces.extend(ids.iter().map(|id| self.piece(at, *id).unwrap_or(0)));
     }
 
     fn beyond(&self, at: &dyn Geometry<2>, id: ContactId, direction: &Vector<2>) -> Option<f64> {

@@ -91,6 +91,10 @@ pub struct MoreauJeanLocated<const D: usize> {
     rooms: Vec<f64>,
     /// Contacts that are past it at the end of the attempt.
     leaving: Vec<ContactId>,
+    /// Contacts that press.
+    pieced: Vec<ContactId>,
+    /// Of these, on which pieces of their surfaces they are at the start of the attempt, and at another time.
+    pieces: [Vec<u32>; 2],
     /// Coordinates on the way of an attempt.
     place: Vec<f64>,
     /// Rows of one contact.
@@ -145,6 +149,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
             on_the_way: Vec::new(),
             rooms: Vec::new(),
             leaving: Vec::new(),
+            pieced: Vec::new(),
+            pieces: [Vec::new(), Vec::new()],
             place: Vec::new(),
             one: ContactStage::new(),
             by_forces: Vec::new(),
@@ -195,6 +201,8 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.on_the_way.reserve(contacts.min(crate::stage::RESERVED_CONTACTS));
         self.rooms.reserve(contacts);
         self.leaving.reserve(contacts);
+        self.pieced.reserve(contacts);
+        self.pieces.iter_mut().for_each(|pieces| pieces.reserve(contacts));
         self.stays.reserve(contacts);
         self.lately.reserve(3 * contacts);
         self.by_forces.resize(model.size().v, 0.0);

@@ -1,9 +1,10 @@
-//! When a contact that presses comes to the end of its surface within a step.
+//! When a contact that presses comes to the end of its surface within a step, or to where its curvature jumps.
 
 use super::MoreauJeanLocated;
 use super::locate::is_time;
 use crate::{Mismatch, Model, State, StepError, StepSpan, Workspace};
 use teeter_contact::Outcome;
+use teeter_detect::ContactId;
 
 /// Attempts up to where a surface ends: two or three do, as each falls short by what its forces differ from those of the one before.
 const ATTEMPTS: usize = 10;
@@ -16,7 +17,8 @@ const HALVINGS: usize = 60;
 
 impl<const D: usize> MoreauJeanLocated<D> {
     /// Looks for contacts that pressed in the part of a step that was attempted, with this outcome, and are past the end of their surface
-    /// after it, as the corner of a block that glides off another one's side. Where there are any, attempts the part up to just past the
+    /// after it, as the corner of a block that glides off another one's side, or on another piece of it, as a disc that rolls from a side
+    /// over its corner: the force changes there at once. Where there are any, attempts the part up to just past the
     /// end that is reached first, and returns the outcome of that and its length, s. What touches there instead has another normal, so
     /// that it may strike; or nothing does.
     pub(super) fn find_end(
@@ -28,16 +30,17 @@ impl<const D: usize> MoreauJeanLocated<D> {
         work: &mut Workspace<D>,
     ) -> Result<(Option<Outcome>, Option<f64>), StepError> {
         self.find_what_leaves(model, part.h, work)?;
-        if self.leaving.is_empty() {
+        self.find_pieces(model, from);
+        let mut is_past = !self.leaving.is_empty() || self.changes_piece(model);
+        if !is_past {
             return Ok((outcome, None));
         }
         let (mut attempted, mut outcome_of_it) = (part.h, outcome);
         for _ in 0..ATTEMPTS {
-            let past = self.leaving.len();
             // One that falls short is taken further.
-            let between = if past > 0 { [0.0, attempted] } else { [attempted, part.h] };
+            let between = if is_past { [0.0, attempted] } else { [attempted, part.h] };
             let tau = self.passes_end(model, from, attempted, between, work)?;
-            if past > 0 && attempted - tau <= AT_ONCE * part.h {
+            if is_past && attempted - tau <= AT_ONCE * part.h {
                 // What leaves at the very end does so between two parts.
                 return Ok((outcome_of_it, (attempted < part.h).then_some(attempted)));
             }
@@ -50,10 +53,29 @@ impl<const D: usize> MoreauJeanLocated<D> {
             }
             attempted = tau;
             self.keep_those_past(model, work)?;
+            is_past = !self.leaving.is_empty() || self.changes_piece(model);
         }
         let outcome = self.attempt_up_to(model, from, part, part.h, work)?;
         self.find_what_leaves(model, part.h, work)?;
         Ok((outcome, None))
+    }
+
+    /// Finds on which pieces of their surfaces contacts that press are at the start of the attempt.
+    fn find_pieces(&mut self, model: &Model<D>, from: &State) {
+        let Self { step, pieced, pieces, .. } = self;
+        pieced.clear();
+        let pressing = step.stage.contacts().iter().filter(|contact| contact.persisting && contact.p[0] > 0.0);
+        pieced.extend(pressing.map(|contact| contact.id));
+        pieces[0].clear();
+        if !pieced.is_empty() {
+            model.detector().pieces(&model.placed_at(&from.q), pieced, &mut pieces[0]);
+        }
+    }
+
+    /// Whether one of these is on another piece at the end of the attempt.
+    fn changes_piece(&mut self, model: &Model<D>) -> bool {
+        let Self { step, pieced, pieces: [first, now], .. } = self;
+        is_elsewhere(model, &step.step.q_at, pieced, first, now)
     }
 
     /// Finds the contacts that press and are past the end of their surface at the end of the attempt, which lasted `h` (s).
@@ -84,7 +106,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         Ok(())
     }
 
-    /// When the first of `ids` is past its end, s, between these times, along the motion of an attempt that lasted so long.
+    /// When the first of `ids` is past its end, or one that presses on another piece, s, between these times, along the motion of an attempt that lasted so long.
     fn passes_end(
         &mut self,
         model: &Model<D>,
@@ -97,7 +119,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
             let tau = 0.5 * (inside + past);
             self.place_at(model, from, lasted, tau);
             work.locate_past_ends(model, &self.place, &self.ids, &mut self.near, &mut self.rooms)?;
-            let all_over = self.rooms.iter().all(|room| *room >= 0.0);
+            let Self { place, pieced, pieces: [first, now], .. } = self;
+            let all_over =
+                self.rooms.iter().all(|room| *room >= 0.0) && !is_elsewhere(model, place, pieced, first, now);
             *(if all_over { &mut inside } else { &mut past }) = tau;
             if past - inside <= f64::EPSILON * past {
                 break;
@@ -105,4 +129,19 @@ impl<const D: usize> MoreauJeanLocated<D> {
         }
         Ok(past)
     }
+}
+
+/// Whether one of the contacts is on another piece of its surface at `q` than `first`; `now` is memory.
+fn is_elsewhere<const D: usize>(
+    model: &Model<D>,
+    q: &[f64],
+    contacts: &[ContactId],
+    first: &[u32],
+    now: &mut Vec<u32>,
+) -> bool {
+    if first.is_empty() {
+        return false;
+    }
+    model.detector().pieces(&model.placed_at(q), contacts, now);
+    first != now.as_slice()
 }

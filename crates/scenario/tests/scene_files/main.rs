@@ -4,6 +4,7 @@
 
 mod beams;
 mod crowds;
+mod discs;
 mod driven;
 mod event_driven;
 mod feet;

@@ -1,0 +1,33 @@
+//! Discs on blocks: the time at which one comes to the corner at the end of a side.
+
+use super::located::run;
+
+/// A disc slides off the end of a block that slides under it the other way. At the corner the curvature of what it slides on jumps; it is
+/// so fast that it flies on from there. The motion has a closed form, of constant accelerations up to the corner.
+#[test]
+fn a_disc_lets_go_at_the_corner_in_time() {
+    const TEXT: &str = "[time]\nend = '0.06 s'\n[world]\ngravity = '9.81 m/s^2'\n[ground]\n\
+        [block.b]\nmass = '8 kg'\ninertia = '0.038667 kg m^2'\nwidth = '0.18 m'\nheight = '0.16 m'\non = 'ground'\nat = '0 m'\n\
+        velocity = ['-1.1 m/s', '0 m/s']\n\
+        [block.disc]\nmass = '2 kg'\ninertia = '0.0064 kg m^2'\nradius = '0.08 m'\non = 'b'\nat = '0.01 m'\nvelocity = ['1 m/s', '0 m/s']\n\
+        [contact.c]\nbetween = ['*', '*']\nfriction = 0.75\n";
+    let (g, friction, masses, half_width) = (9.81, 0.75, [8.0, 2.0], 0.09);
+    let accelerations = [friction * g * (2.0 * masses[1] + masses[0]) / masses[0], -friction * g];
+    // The relative motion of the disc up to the corner.
+    let (a, v, x) = (0.5 * (accelerations[1] - accelerations[0]), 1.0 + 1.1, 0.01 - half_width);
+    let corner = (-v + f64::sqrt(v * v - 4.0 * a * x)) / (2.0 * a);
+    let place = |v: f64, a: f64, after: f64| {
+        let (flown, v_corner) = (0.06 - corner, v + a * corner);
+        v * corner + 0.5 * a * corner * corner + v_corner * flown + 0.5 * after * flown * flown
+    };
+    let right = [place(-1.1, accelerations[0], friction * g), 0.01 + place(1.0, accelerations[1], 0.0)];
+    assert!(v + 2.0 * a * corner > f64::sqrt(0.08 * g), "it flies");
+    for step in ["500 us", "250 us"] {
+        let (simulation, _) = run(TEXT, step);
+        for (name, right) in ["b", "disc"].into_iter().zip(right) {
+            let block = simulation.layout.blocks.iter().find(|block| block.name == name).unwrap().range.clone();
+            let x = simulation.state.q[block.start];
+            assert!((x - right).abs() < 5e-8, "{step}: {name} at {x} instead of {right}");
+        }
+    }
+}
