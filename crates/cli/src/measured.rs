@@ -3,12 +3,13 @@
 use crate::console::Console;
 use crate::render::Presenter;
 use clap::Args;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use teeter_scenario::diagnostic::printable;
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::quantity;
 use teeter_study::compare::AlignmentSettings;
-use teeter_study::measured::{ColumnLayout, LARGEST_FILE, LEAST_WINDOW, Measured, Sign};
+use teeter_study::measured::{ColumnLayout, LARGEST_FILE, LEAST_WINDOW, Measured, Sign, line_ranges};
 
 /// How many columns that aren't read are named.
 const MOST_NAMED: usize = 5;
@@ -32,6 +33,12 @@ pub(crate) struct MeasuredOptions {
     /// Rows per second, for a table without times or with numbers of frames, such as "165 Hz"
     #[arg(long, value_name = "RATE", value_parser = rate, allow_hyphen_values = true)]
     rate: Option<f64>,
+    /// Lines before the heading that are not read
+    #[arg(long, value_name = "LINES")]
+    skip: Option<usize>,
+    /// Lines of the table whose frames are wrong and taken as lost, such as 62,90-95
+    #[arg(long, value_name = "LINES", value_parser = lines)]
+    leave_out: Option<Lines>,
     /// The block that was measured (default: the only one)
     #[arg(long, value_name = "NAME")]
     pub(crate) block: Option<String>,
@@ -45,6 +52,14 @@ pub(crate) struct MeasuredOptions {
     /// Rows of the window through which both motions are smoothed and rates are found
     #[arg(long, value_name = "ROWS", default_value = "5", value_parser = window)]
     pub(crate) window: usize,
+}
+
+/// Lines of the table.
+#[derive(Clone, Debug)]
+struct Lines(Vec<RangeInclusive<usize>>);
+
+fn lines(text: &str) -> Result<Lines, String> {
+    line_ranges(text).map(Lines)
 }
 
 fn rate(text: &str) -> Result<f64, String> {
@@ -112,6 +127,10 @@ impl MeasuredOptions {
             layout.set_unit(name, unit).map_err(|why| usage("unit", why))?;
         }
         layout.rate = self.rate.or(layout.rate);
+        layout.skip = self.skip.unwrap_or(layout.skip);
+        if let Some(Lines(lines)) = &self.leave_out {
+            layout.leave_out.clone_from(lines);
+        }
         let bytes = bytes(&self.measured)?;
         Measured::read(&bytes, &layout, block).map_err(|error| format!("error: {}: {error}", self.measured.display()))
     }

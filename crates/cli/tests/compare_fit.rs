@@ -507,3 +507,125 @@ fn what_a_table_shows_beside_the_motion_is_told() {
     let (text, _) = compare(&["noise.csv"]);
     assert!(text.contains("the measured phi doesn’t rise above its noise"), "{text}");
 }
+
+/// The motion of a block on the ground as a camera sees it: 0.1 s at rest, then 0.6 s of rocking.
+fn seen_on_ground(name: &str) -> (PathBuf, Vec<[f64; 4]>) {
+    let folder = folder(name);
+    let scene = scenario("free-rocking-on-ground.toml");
+    done(&folder, &["run", &scene, "--out", "run", "--quiet", "--no-report", "--set", "time.end=0.6 s"]);
+    let frames = frames(&folder.join("run"), "rocker");
+    (folder, frames)
+}
+
+#[test]
+fn the_offset_that_is_told_is_that_of_the_rows_for_which_it_promises() {
+    let (folder, frames) = seen_on_ground("promise");
+    // The held block stood 0.6° off, and moved 0.2° off.
+    let rows: String = frames
+        .iter()
+        .map(|row| format!("{},{}\n", row[0], row[3].to_degrees() + if row[0] < 0.0 { 0.6 } else { 0.2 }))
+        .collect();
+    std::fs::write(folder.join("off.csv"), format!("t,phi (deg)\n{rows}")).unwrap();
+    let compare = |more: &[&str]| {
+        let arguments = [&["compare", "run", "off.csv", "--force"], more].concat();
+        let text = done(&folder, &arguments);
+        let found = read(&folder.join("run-compare/compare.json"));
+        (text, found["quantities"]["phi"]["rms"].as_f64().unwrap().to_degrees())
+    };
+    let (text, _) = compare(&[]);
+    // Two rows about t = 0 are smoothed over both.
+    assert!(text.contains("apart by a constant, −0.2°, but before the release by −0.6°"), "{text}");
+    let after = |words: &str, end: char| text.split(words).nth(1).unwrap().split(end).next().unwrap().to_owned();
+    let (offset, promised) = (after("with --offset \"", '"'), after("root mean square difference would be ", '°'));
+    let (_, rms) = compare(&["--offset", &offset]);
+    // Told to two digits.
+    assert!((rms / promised.parse::<f64>().unwrap() - 1.0).abs() < 0.06, "{rms}°, not {promised}°: {text}");
+}
+
+#[test]
+fn lost_angles_are_not_compared() {
+    let (folder, frames) = seen_on_ground("lost");
+    let phi = |k: usize, phi: f64| if k.is_multiple_of(3) { String::new() } else { format!("{phi}") };
+    let rows: String =
+        frames.iter().enumerate().map(|(k, row)| format!("{},{},{}\n", row[0], row[1], phi(k, row[3]))).collect();
+    std::fs::write(folder.join("x.csv"), format!("t,x,phi\n{rows}")).unwrap();
+    let text = done(&folder, &["compare", "run", "x.csv"]);
+    let found = read(&folder.join("run-compare/compare.json"));
+    let [x, phi] = ["x", "phi"].map(|name| found["quantities"][name]["rows"].as_u64().unwrap());
+    assert!(found["compared"]["rows"] == x && x * 6 / 10 < phi && phi < x * 7 / 10, "{x} {phi}");
+    assert!(text.contains(&format!("measured rows are compared (phi in {phi} of them)")), "{text}");
+    // Without x these rows have nothing to compare.
+    let rows: String = frames
+        .iter()
+        .enumerate()
+        .map(|(k, row)| {
+            format!("{},{}\n", row[0], if k.is_multiple_of(3) { String::new() } else { format!("{}", row[3]) })
+        })
+        .collect();
+    std::fs::write(folder.join("phi.csv"), format!("t,phi\n{rows}")).unwrap();
+    let text = done(&folder, &["compare", "run", "phi.csv", "--force"]);
+    assert_eq!(read(&folder.join("run-compare/compare.json"))["compared"]["rows"], phi, "{text}");
+    let rows = std::fs::read_to_string(folder.join("run-compare/compare.csv")).unwrap();
+    assert_eq!(rows.matches(",yes\n").count() as u64, phi);
+}
+
+#[test]
+fn frames_that_are_wrong_are_named_and_move_no_alignment() {
+    let (folder, frames) = seen_on_ground("outliers");
+    let mut noise = Noise(4);
+    let rows: String = frames
+        .iter()
+        .enumerate()
+        .map(|(k, row)| {
+            let wrong = if [40, 41, 60, 90].contains(&k) { 150.0 } else { 0.0 };
+            format!("{},{:.3}\n", row[0] + 3.0, row[3].to_degrees() + 0.01 * noise.next() + wrong)
+        })
+        .collect();
+    std::fs::write(folder.join("wrong.csv"), format!("made by us\nt,phi (deg)\n{rows}")).unwrap();
+    let compare = |more: &[&str]| {
+        let text = done(&folder, &[&["compare", "run", "wrong.csv", "--skip", "1", "--force"], more].concat());
+        (text, read(&folder.join("run-compare/compare.json")))
+    };
+    let (text, found) = compare(&[]);
+    assert!(text.contains("warning: outliers in lines 43, 44, 63, 93 of the table"), "{text}");
+    assert!(text.contains("--leave-out 43,44,63,93"), "{text}");
+    assert!((found["time_shift"].as_f64().unwrap() + 3.0).abs() < 5e-4, "{text}");
+    assert_eq!(found["outlier_lines"], serde_json::json!([43, 44, 63, 93]));
+    assert!(!text.contains("hardly match"), "the other rows match: {text}");
+    let (text, found) = compare(&["--leave-out", "43-44, 63,93"]);
+    assert!(!text.contains("outliers") && found["outlier_lines"] == serde_json::json!([]), "{text}");
+    let rms = found["quantities"]["phi"]["rms"].as_f64().unwrap().to_degrees();
+    assert!(rms < 0.02, "{rms}");
+    let missing = teeter(&folder, &["compare", "run", "wrong.csv", "--skip", "1", "--force", "--leave-out", "1"]);
+    let told = String::from_utf8(missing.stderr).unwrap();
+    assert!(told.contains("line 1: to be left out, but there is no row of numbers"), "{told}");
+}
+
+#[test]
+fn a_flat_fall_is_aligned_by_its_height_and_wrong_units_are_guessed() {
+    let folder = folder("fall");
+    let scene = scenario("drop.toml");
+    done(&folder, &["run", &scene, "--out", "run", "--quiet", "--no-report"]);
+    let frames = frames(&folder.join("run"), "cube");
+    let mut noise = Noise(9);
+    let rows: String = frames
+        .iter()
+        .map(|[t, _, y, phi]| {
+            format!("{},{:.3},{:.3}\n", t + 2.0, phi.to_degrees() + 0.03 * noise.next(), 1e3 * y + 0.1 * noise.next())
+        })
+        .collect();
+    std::fs::write(folder.join("fall.csv"), format!("t,phi (deg),y (mm)\n{rows}")).unwrap();
+    let text = done(&folder, &["compare", "run", "fall.csv"]);
+    let found = read(&folder.join("run-compare/compare.json"));
+    assert_eq!((found["aligned_by"].as_str(), found["sign_found"].as_bool()), (Some("y"), Some(false)));
+    assert!((found["time_shift"].as_f64().unwrap() + 2.0).abs() < 1e-3, "{text}");
+    assert!(text.contains("they are aligned by y, as the measured phi hardly rises above its noise"), "{text}");
+    assert!(
+        text.contains("(assumed: no quantity that would tell the side") && !text.contains("hardly match"),
+        "{text}"
+    );
+    let rows: String = frames.iter().map(|row| format!("{},{}\n", 1e3 * row[0], row[2])).collect();
+    std::fs::write(folder.join("ms.csv"), format!("t,y\n{rows}")).unwrap();
+    let told = String::from_utf8(teeter(&folder, &["compare", "run", "ms.csv", "--force"]).stderr).unwrap();
+    assert!(told.contains("if the times are in milliseconds, say so: --unit t=ms"), "{told}");
+}

@@ -2,6 +2,7 @@
 
 use super::MotionTrace;
 use super::correlate::candidates;
+use super::outliers::{confirmed, suspects, without};
 use crate::measured::{Channel, Measured, MeasuredMotion, Sign};
 
 /// What is known of the alignment; the rest is found.
@@ -22,8 +23,10 @@ pub struct Alignment {
     pub shift_found: bool,
     /// The side.
     pub sign: Sign,
-    /// Whether it was found rather than given.
+    /// Whether it was found, rather than given or, where no quantity tells the side, assumed.
     pub sign_found: bool,
+    /// The quantity by which they were found.
+    pub by: Channel,
     /// Mean square difference by which they were found, as a share of the mean squares of both
     /// motions: 0 for equal ones, 1 for unrelated ones.
     pub mismatch: f64,
@@ -41,36 +44,107 @@ const FEWEST_ROWS: usize = 4;
 /// At least this share of the shorter motion has to be compared.
 const OVERLAP: f64 = 0.5;
 
+/// A measured motion that is aligned with a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Aligned {
+    /// How.
+    pub alignment: Alignment,
+    /// The motion as seen from the side of the scene, in its own times.
+    pub motion: MeasuredMotion,
+    /// The rows in which a quantity is off on its own: they don't count for the alignment.
+    pub outliers: Vec<usize>,
+}
+
 /// Aligns a measured motion with a run up to time `end` (s): of the shifts and sides that are not
-/// given, those with the smallest mean square difference of the angle, or of the first quantity that
-/// the table has.
+/// given, those with the smallest mean square difference of the [leading](MeasuredMotion::leading)
+/// quantity.
 #[must_use]
-pub fn align(
+pub fn align(measured: &Measured, trace: &MotionTrace, end: f64, offset: f64, settings: AlignmentSettings) -> Aligned {
+    let suspected = suspects(&measured.motion(Sign::AsIs));
+    let first = align_without(measured, trace, end, offset, settings, &suspected);
+    if suspected.is_empty() {
+        return first;
+    }
+    let off = confirmed_by(trace, &first, &suspected);
+    let mut aligned = match off.len() == suspected.len() {
+        true => first,
+        false => align_without(measured, trace, end, offset, settings, &off),
+    };
+    aligned.outliers = off.into_iter().map(|(row, _)| row).collect();
+    aligned.outliers.sort_unstable();
+    aligned.outliers.dedup();
+    aligned
+}
+
+/// Those of the suspected values that the run doesn't have either.
+fn confirmed_by(trace: &MotionTrace, aligned: &Aligned, suspected: &[(usize, usize)]) -> Vec<(usize, usize)> {
+    let Aligned { alignment, motion, .. } = aligned;
+    let of_channel = |(place, (channel, values)): (usize, &(Channel, Vec<f64>))| {
+        let rows: Vec<usize> = suspected.iter().filter(|found| found.1 == place).map(|found| found.0).collect();
+        let mut hint = 0;
+        let apart: Vec<f64> = motion
+            .t
+            .iter()
+            .zip(values)
+            .map(|(t, value)| {
+                let simulated = trace.at_near(t + alignment.shift, &mut hint);
+                simulated.map_or(f64::NAN, |simulated| simulated.of(*channel) - value)
+            })
+            .collect();
+        confirmed(&apart, &rows).into_iter().map(move |row| (row, place)).collect::<Vec<_>>()
+    };
+    motion.channels.iter().enumerate().flat_map(of_channel).collect()
+}
+
+/// As [`align`], without the values of these rows and quantities.
+fn align_without(
     measured: &Measured,
     trace: &MotionTrace,
     end: f64,
     offset: f64,
     settings: AlignmentSettings,
-) -> (Alignment, MeasuredMotion) {
+    off: &[(usize, usize)],
+) -> Aligned {
     let signs = settings.sign.map_or(vec![Sign::AsIs, Sign::Reversed], |sign| vec![sign]);
     let start = trace.at(0.0).map_or(0.0, |motion| motion.of(Channel::Phi));
-    let mut best: Option<(Alignment, MeasuredMotion)> = None;
+    let mut best: Option<(f64, Aligned)> = None;
     for sign in signs {
         let mut motion = measured.motion(sign);
         set_zero(&mut motion, sign.factor() * offset, start);
-        let search = Search::new(&motion, trace, end);
+        let counted = without(&motion, off);
+        let search = Search::new(&counted, trace, end);
         let (shift, mismatch) = match settings.shift {
             Some(shift) => (shift, search.mismatch(shift).unwrap_or(f64::INFINITY)),
             None => search.best(),
         };
+        let (of_side, tells_side) = match side_mismatch(&counted, trace, end, shift) {
+            _ if search.channel.is_mirrored() => (mismatch, true),
+            Some(of_side) => (of_side, true),
+            None => (mismatch, false),
+        };
         // Of an exact tie, the side as it is.
-        if best.as_ref().is_none_or(|(found, _)| mismatch < found.mismatch) {
-            let (shift_found, sign_found) = (settings.shift.is_none(), settings.sign.is_none());
-            best = Some((Alignment { shift, shift_found, sign, sign_found, mismatch }, motion));
+        if best.as_ref().is_none_or(|(found, _)| of_side < *found) {
+            let shift_found = settings.shift.is_none();
+            let sign_found = settings.sign.is_none() && tells_side;
+            let alignment = Alignment { shift, shift_found, sign, sign_found, by: search.channel, mismatch };
+            best = Some((of_side, Aligned { alignment, motion, outliers: Vec::new() }));
         }
     }
-    let none = Alignment { shift: 0.0, shift_found: true, sign: Sign::AsIs, sign_found: true, mismatch: f64::INFINITY };
-    best.unwrap_or_else(|| (none, measured.motion(Sign::AsIs)))
+    best.map_or_else(
+        || {
+            let (sign, by) = (Sign::AsIs, Channel::Phi);
+            let alignment =
+                Alignment { shift: 0.0, shift_found: true, sign, sign_found: true, by, mismatch: f64::INFINITY };
+            Aligned { alignment, motion: measured.motion(sign), outliers: Vec::new() }
+        },
+        |(_, aligned)| aligned,
+    )
+}
+
+/// The mismatch of the quantity that tells best from which side a motion was seen, with a time shift; `None` if there is none above its noise.
+pub(crate) fn side_mismatch(motion: &MeasuredMotion, trace: &MotionTrace, end: f64, shift: f64) -> Option<f64> {
+    let channel = motion.telling_side()?;
+    Search::of(channel, motion, trace, end).mismatch(shift)
 }
 
 /// Takes the zero of the angle out of a measured motion.
@@ -112,7 +186,10 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn new(motion: &MeasuredMotion, trace: &'a MotionTrace, end: f64) -> Self {
-        let channel = motion.leading();
+        Self::of(motion.leading(), motion, trace, end)
+    }
+
+    fn of(channel: Channel, motion: &MeasuredMotion, trace: &'a MotionTrace, end: f64) -> Self {
         let values = motion.values(channel).unwrap_or_default();
         let rows: Vec<(f64, f64)> =
             motion.t.iter().copied().zip(values.iter().copied()).filter(|(_, value)| value.is_finite()).collect();
@@ -222,12 +299,44 @@ mod tests {
         });
         let text = format!("t,phi\n{}", frames.collect::<String>());
         let measured = Measured::read(text.as_bytes(), &ColumnLayout::default(), "b").unwrap();
-        let (found, _) = align(&measured, &trace, 2.0, 0.0, AlignmentSettings::default());
+        let found = align(&measured, &trace, 2.0, 0.0, AlignmentSettings::default()).alignment;
         assert_eq!(found.sign, Sign::Reversed);
         assert!((found.shift + 3.4).abs() < 1e-5, "{found:?}");
         let given = AlignmentSettings { shift: Some(-3.3), sign: Some(Sign::AsIs) };
-        let (found, _) = align(&measured, &trace, 2.0, 0.0, given);
+        let found = align(&measured, &trace, 2.0, 0.0, given).alignment;
         assert!(found.shift == -3.3 && found.sign == Sign::AsIs && found.mismatch > 0.5);
+    }
+
+    /// A block that falls flat, of which the camera sees a rising picture with few wrong frames.
+    #[test]
+    fn noise_and_wrong_frames_do_not_align_a_motion() {
+        let mut trace = MotionTrace::default();
+        for k in 0..=1000 {
+            let t = 1e-3 * f64::from(k);
+            // Thrown up and aside, so that both coordinates move, and never turned.
+            let (x, y) = (0.8 * t, t * (2.0 - 0.5 * 9.81 * t));
+            trace.push(t, [x, y, 0.0], [0.8, 2.0 - 9.81 * t, 0.0]);
+        }
+        let noise = |k: u32| 1e-4 * f64::from((k * 7919) % 13) / 6.0;
+        let table = |sign: f64, wrong: &[u32]| {
+            let rows = (0..130_u32).map(|k| {
+                let t = f64::from(k) / 165.0;
+                let off = if wrong.contains(&k) { 9.0 } else { 0.0 };
+                let (s, x) = (t + 0.1, sign * 0.8 * (t + 0.1));
+                format!("{t:?},{},{},{}\n", 30.0 * noise(k + 3), x + noise(k), s * (2.0 - 0.5 * 9.81 * s) + off)
+            });
+            let text = format!("t,phi,x,y\n{}", rows.collect::<String>());
+            Measured::read(text.as_bytes(), &ColumnLayout::default(), "b").unwrap()
+        };
+        for (factor, sign) in [(1.0, Sign::AsIs), (-1.0, Sign::Reversed)] {
+            for wrong in [&[] as &[u32], &[20, 21, 70, 100]] {
+                let aligned = align(&table(factor, wrong), &trace, 1.0, 0.0, AlignmentSettings::default());
+                let found = aligned.alignment;
+                assert_eq!((found.by, found.sign, found.sign_found), (Channel::Y, sign, true), "{found:?}");
+                assert!((found.shift - 0.1).abs() < 1e-3, "{found:?}");
+                assert_eq!(aligned.outliers.iter().map(|row| *row as u32).collect::<Vec<_>>(), wrong);
+            }
+        }
     }
 
     /// A block that rocks 100 times in a minute and hardly loses energy: one period off, nearly
@@ -264,7 +373,7 @@ mod tests {
             let motion = measured.motion(Sign::AsIs);
             let (shift, mismatch) = mismatch_and_shift(&motion, &trace, 60.0);
             assert!((shift - begin).abs() < 2e-4 && mismatch < 1e-4, "from {begin} s: {shift} s, {mismatch}");
-            let (found, _) = align(&measured, &trace, 60.0, 0.0, AlignmentSettings::default());
+            let found = align(&measured, &trace, 60.0, 0.0, AlignmentSettings::default()).alignment;
             assert!(found.sign == Sign::AsIs && (found.shift - begin).abs() < 2e-4, "from {begin} s: {found:?}");
         }
     }

@@ -2,21 +2,24 @@
 //! smoothing, compared as a whole, by half-cycles and by impacts.
 
 mod align;
+mod constant;
 mod correlate;
 mod cycles;
 mod differences;
+mod outliers;
 mod trace;
 mod write;
 
-pub use align::{Alignment, AlignmentSettings, align};
-pub(crate) use align::{FINE, golden, mismatch_and_shift, mismatch_of, set_zero};
+pub use align::{Aligned, Alignment, AlignmentSettings, align};
+pub(crate) use align::{FINE, golden, mismatch_and_shift, mismatch_of, set_zero, side_mismatch};
+pub use constant::Constant;
 pub use cycles::{HalfCycle, HalfCyclePair, ImpactPair, Swing, pair_half_cycles, pair_impacts, swing};
 pub use differences::{ChannelComparison, Differences};
 pub(crate) use trace::Tracer;
 pub use trace::{MotionTrace, TraceError};
 pub use write::sentences_of;
 pub use write::{FILES, half_cycle_csv, impact_csv, json, page, rows_csv, svg_figures};
-pub(crate) use write::{STYLE, fixed, horizon_note, motion_figures};
+pub(crate) use write::{STYLE, fixed, horizon_note, motion_figures, outliers};
 
 use crate::measured::{Channel, LocalFit, Measured, MeasuredMotion, local_fit};
 
@@ -40,7 +43,7 @@ pub enum CompareError {
     /// They don't overlap in time.
     #[error(
         "the measured motion from t = {from} s to {to} s and the run up to {end} s have fewer than {least} rows in common, \
-         with the time shift {shift} s"
+         with the time shift {shift} s{hint}"
     )]
     Apart {
         /// Begin of the measured motion, in its own time, s.
@@ -53,6 +56,8 @@ pub enum CompareError {
         shift: f64,
         /// The fewest rows that can be compared.
         least: usize,
+        /// What may be wrong; empty if nothing is known.
+        hint: &'static str,
     },
 }
 
@@ -67,7 +72,11 @@ pub struct Comparison {
     pub trace: MotionTrace,
     /// The quantities that both have, measured ones first, each before its rate.
     pub channels: Vec<ChannelComparison>,
-    /// The rows that are compared: of the run, from its t = 0 up to the horizon.
+    /// The rows in which a quantity is off on its own, as where a tracker lost the block: they don't count for the alignment.
+    pub outliers: Vec<usize>,
+    /// Whether the measured angle was taken to be in rad for want of a unit.
+    pub phi_without_unit: bool,
+    /// The rows that are compared where they have values: of the run, from its t = 0 up to the horizon.
     pub rows: std::ops::Range<usize>,
     /// The rows before them in which the block was held, both measured and in the run: they count for the alignment, but into no norm of the motion.
     pub held: std::ops::Range<usize>,
@@ -75,6 +84,8 @@ pub struct Comparison {
     pub half_cycles: Vec<HalfCyclePair>,
     /// Impacts of the rocking block, measured with simulated.
     pub impacts: Vec<ImpactPair>,
+    /// A constant between the angles, if that is much of their difference.
+    pub constant: Option<Constant>,
     /// The settings.
     pub settings: CompareSettings,
 }
@@ -82,14 +93,40 @@ pub struct Comparison {
 /// Fewest rows that can be compared.
 const FEWEST: usize = 8;
 
+/// Times without a unit that reach over so many times the run are none in seconds.
+const LONG: f64 = 20.0;
+
+/// What may be wrong with times that the run, up to `end` (s), doesn't have.
+fn hint_of_times(measured: &Measured, end: f64) -> &'static str {
+    let t = measured.motion(crate::measured::Sign::AsIs).t;
+    let length = t.last().zip(t.first()).map_or(0.0, |(last, first)| last - first);
+    match measured.is_without_unit("t") && length > LONG * end {
+        true => "; if the times are in milliseconds, say so: --unit t=ms, or the heading `t [ms]`",
+        false => "",
+    }
+}
+
 impl Comparison {
     /// Compares a measured motion with a simulated one.
     ///
     /// # Errors
     /// If they have no time in common.
     pub fn of(measured: &Measured, trace: MotionTrace, settings: CompareSettings) -> Result<Self, CompareError> {
+        let mut comparison = Self::without_constant(measured, trace, settings)?;
+        let again = |settings| Self::without_constant(measured, comparison.trace.clone(), settings).ok();
+        comparison.constant = constant::constant_of(&comparison, again);
+        Ok(comparison)
+    }
+
+    /// As [`Self::of`], without looking for a constant.
+    fn without_constant(
+        measured: &Measured,
+        trace: MotionTrace,
+        settings: CompareSettings,
+    ) -> Result<Self, CompareError> {
         let end = settings.horizon.map_or(trace.end(), |horizon| horizon.min(trace.end()));
-        let (alignment, mut motion) = align(measured, &trace, end, settings.offset, settings.alignment);
+        let aligned = align(measured, &trace, end, settings.offset, settings.alignment);
+        let Aligned { alignment, mut motion, outliers } = aligned;
         motion.t.iter_mut().for_each(|t| *t += alignment.shift);
         let begin = if trace.is_held() { f64::NEG_INFINITY } else { 0.0 };
         // A row that rounding puts beyond the end belongs to the run.
@@ -100,7 +137,10 @@ impl Comparison {
         // What moves in the rows that are compared, not how long the camera ran before.
         let rows = first.max(released)..last;
         let held = first..rows.start.max(first);
-        if rows.len() < FEWEST || !(motion.t.get(last.saturating_sub(1)).copied().unwrap_or(0.0) > 0.0) {
+        let has_value = |row: &usize| motion.channels.iter().any(|(_, values)| values[*row].is_finite());
+        if rows.clone().filter(has_value).count() < FEWEST
+            || !(motion.t.get(last.saturating_sub(1)).copied().unwrap_or(0.0) > 0.0)
+        {
             let at = |row: Option<&f64>| row.map_or(f64::NAN, |t| t - alignment.shift);
             return Err(CompareError::Apart {
                 from: at(motion.t.first()),
@@ -108,6 +148,7 @@ impl Comparison {
                 end,
                 shift: alignment.shift,
                 least: FEWEST,
+                hint: hint_of_times(measured, trace.end()),
             });
         }
         let channels = differences::of(&motion, &trace, [&rows, &held], settings.window);
@@ -124,7 +165,39 @@ impl Comparison {
             half_cycles = pair_half_cycles(&a, &b);
             impacts = pair_impacts(&a, &b);
         }
-        Ok(Self { alignment, measured: motion, trace, channels, rows, held, half_cycles, impacts, settings })
+        let phi_without_unit = measured.is_without_unit(Channel::Phi.word());
+        Ok(Self {
+            alignment,
+            measured: motion,
+            trace,
+            channels,
+            outliers,
+            phi_without_unit,
+            rows,
+            held,
+            half_cycles,
+            impacts,
+            constant: None,
+            settings,
+        })
+    }
+
+    /// Whether a row of the measured table has a value that is compared.
+    #[must_use]
+    pub fn is_compared(&self, row: usize) -> bool {
+        self.rows.contains(&row) && self.has_value(row)
+    }
+
+    /// Number of rows with a value that is compared. A quantity may be lost in some of them: its
+    /// [`Differences`] say in how many it is there.
+    #[must_use]
+    pub fn compared(&self) -> usize {
+        self.rows.clone().filter(|&row| self.has_value(row)).count()
+    }
+
+    /// Whether any quantity is there in a row, in both motions.
+    fn has_value(&self, row: usize) -> bool {
+        self.channels.iter().any(|found| (found.measured.value[row] - found.simulated.value[row]).is_finite())
     }
 
     /// The comparison of a quantity.

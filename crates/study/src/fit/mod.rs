@@ -12,7 +12,7 @@ pub use confidence::{Estimate, TradeOff};
 pub use keys::FitKey;
 pub use write::{FILES, csv, figures, json, page, sentences};
 
-use crate::compare::{AlignmentSettings, CompareSettings, Comparison, mismatch_and_shift, set_zero};
+use crate::compare::{AlignmentSettings, CompareSettings, Comparison, mismatch_and_shift, set_zero, side_mismatch};
 use crate::measured::{Measured, Sign};
 use crate::sweep::sample::{Method, Sampler};
 use crate::{Failure, Setting, StudyScene, divergence, runner};
@@ -393,7 +393,13 @@ fn search<'a>(
         let trace = objectives[0].trace(&objectives[0].setting(at))?;
         let each = objectives.iter().map(|objective| match settings.alignment.shift {
             Some(_) => mismatch_of_given(objective, &trace),
-            None => mismatch_and_shift(&objective.motion, &trace, objective.until),
+            None => {
+                let (shift, mismatch) = mismatch_and_shift(&objective.motion, &trace, objective.until);
+                // What aligns them may look the same from both sides, as a fall does.
+                let tells_side = objectives.len() == 1 || objective.motion.leading().is_mirrored();
+                let of_side = || side_mismatch(&objective.motion, &trace, objective.until, shift);
+                (shift, if tells_side { mismatch } else { mismatch + of_side().unwrap_or(0.0) })
+            }
         });
         Ok::<Vec<(f64, f64)>, Failure>(each.collect())
     };

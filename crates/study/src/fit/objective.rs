@@ -217,7 +217,7 @@ mod tests {
     fn noise_of(values: Vec<f64>) -> f64 {
         let t = (0..values.len()).map(|k| k as f64 / 165.0).collect();
         let channels = vec![(Channel::Phi, values)];
-        let motion = MeasuredMotion { t, channels, markers: None, phi_from_first_row: false };
+        let motion = MeasuredMotion { t, lines: Vec::new(), channels, markers: None, phi_from_first_row: false };
         Objective::noise_of(&motion)[0]
     }
 

@@ -1,7 +1,8 @@
 //! What a fit writes.
 
 use super::{Estimate, Fit};
-use crate::compare::{STYLE, fixed, horizon_note, motion_figures, sentences_of};
+use crate::compare::{Alignment, STYLE, fixed, horizon_note, motion_figures, outliers, sentences_of};
+use crate::measured::Sign;
 use crate::write::{html_list, html_table, percent, power, short};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -256,6 +257,7 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
             short(cost.sqrt())
         ));
     }
+    texts.extend(outliers(&fit.comparison));
     let left = fit.cost.sqrt();
     let told = format!("the residuals are {} times the noise of the samples", short(left));
     texts.push(if left > DESCRIBED {
@@ -289,6 +291,15 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
         } else {
             ""
         }
+    ));
+    let Alignment { sign, sign_found, .. } = fit.comparison.alignment;
+    texts.push(format!(
+        "the measured motion was {} ({})",
+        match sign {
+            Sign::AsIs => "seen as in the scene: its sign is that of the run",
+            Sign::Reversed => "seen from behind: its sign is turned (--sign -1)",
+        },
+        if sign_found { "found" } else { "given" }
     ));
     texts.push("the 95 % intervals hold if the keys that were not varied have the right values".to_owned());
     texts.push(match fit.restarts.get(1) {

@@ -2,6 +2,7 @@
 
 use crate::sweep::spec::{Node, Reader, entries};
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use teeter_scenario::diagnostic::Diagnostics;
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::quantity;
@@ -42,6 +43,8 @@ pub struct ColumnLayout {
     pub separator: Option<char>,
     /// Lines before the heading that are not read.
     pub skip: usize,
+    /// Lines of the file, from 1, whose values are lost: frames that are known to be wrong.
+    pub leave_out: Vec<RangeInclusive<usize>>,
     /// Rows per second, Hz, for tables that have no times or count frames.
     pub rate: Option<f64>,
     /// Whether y is positive downwards, as in coordinates of pixels.
@@ -54,7 +57,7 @@ pub struct ColumnLayout {
 
 /// The names of the quantities that a table may hold.
 pub(super) const NAMES: [&str; 7] = ["t", "phi", "omega", "x", "y", "vx", "vy"];
-const KEYS: [&str; 6] = ["separator", "skip", "rate", "y_down", "columns", "marker"];
+const KEYS: [&str; 7] = ["separator", "skip", "leave_out", "rate", "y_down", "columns", "marker"];
 const COLUMN_EXAMPLE: &str =
     "give its heading, such as \"Angle\", or its number, or { column = \"Angle\", unit = \"deg\" }";
 const MARKER_KEYS: [&str; 4] = ["x", "y", "unit", "at"];
@@ -83,6 +86,10 @@ impl ColumnLayout {
                 ("skip", _) => match node.whole().and_then(|lines| usize::try_from(lines).ok()) {
                     Some(lines) => layout.skip = lines,
                     None => reader.wrong(name, Some(&node), "a number of lines is expected", "such as 3"),
+                },
+                ("leave_out", _) => match node.text().map(line_ranges) {
+                    Some(Ok(lines)) => layout.leave_out = lines,
+                    _ => reader.wrong(name, Some(&node), "lines are expected", LINES_EXAMPLE),
                 },
                 ("rate", _) => match node.text().map(rate) {
                     Some(Ok(rate)) => layout.rate = Some(rate),
@@ -169,6 +176,23 @@ impl ColumnLayout {
         }
         Err(format!("there is no quantity `{name}`: a table may hold {}", NAMES.join(", ")))
     }
+}
+
+const LINES_EXAMPLE: &str = "such as \"62, 90-95\": numbers of lines of the file from 1, and ranges of them";
+
+/// Lines of a file, from 1, as in `62, 90-95`.
+///
+/// # Errors
+/// If they are written otherwise.
+pub fn line_ranges(text: &str) -> Result<Vec<RangeInclusive<usize>>, String> {
+    let number = |text: &str| text.trim().parse::<usize>().ok().filter(|line| *line > 0);
+    let range = |text: &str| {
+        let (from, to) = text.split_once('-').unwrap_or((text, text));
+        let (from, to) = (number(from)?, number(to)?);
+        (from <= to).then_some(from..=to)
+    };
+    let all: Option<Vec<RangeInclusive<usize>>> = text.split(',').map(range).collect();
+    all.ok_or_else(|| format!("lines are expected, {LINES_EXAMPLE}"))
 }
 
 /// A separator by its sign or word.

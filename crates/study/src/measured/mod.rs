@@ -8,7 +8,7 @@ mod read;
 mod smooth;
 mod table;
 
-pub use layout::{ColumnLayout, ColumnSpec, MarkerSpec};
+pub use layout::{ColumnLayout, ColumnSpec, MarkerSpec, line_ranges};
 pub use markers::MarkerResidual;
 pub use motion::{Channel, MeasuredMotion, Sign};
 pub use read::{Measured, MeasuredError};

@@ -1,6 +1,7 @@
 //! Measured motion in SI units.
 
 use super::markers::MarkerResidual;
+use super::smooth::local_fit;
 use teeter_scenario::dimension::Dimension;
 
 /// A quantity of a block's motion.
@@ -77,7 +78,7 @@ impl Channel {
     }
 
     /// Whether a view from behind turns its sign.
-    pub(super) fn is_mirrored(self) -> bool {
+    pub(crate) fn is_mirrored(self) -> bool {
         !matches!(self, Self::Y | Self::Vy)
     }
 }
@@ -103,11 +104,20 @@ impl Sign {
     }
 }
 
+/// An angle that spreads over so many standard deviations of its noise aligns a motion.
+const CLEAR_SIGNAL: f64 = 10.0;
+/// What spreads over less than so many shows nothing.
+const LEAST_SIGNAL: f64 = 3.0;
+/// Rows of the window by which noise is estimated.
+const NOISE_WINDOW: usize = 7;
+
 /// A measured motion as seen from one side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredMotion {
     /// Times of the rows as in the table, s.
     pub t: Vec<f64>,
+    /// The lines of the table that hold them.
+    pub lines: Vec<usize>,
     /// The quantities and their values at these times; NaN where a row has none.
     pub channels: Vec<(Channel, Vec<f64>)>,
     /// How well the markers fit, if there are any.
@@ -123,10 +133,42 @@ impl MeasuredMotion {
         self.channels.iter().find(|(other, _)| *other == channel).map(|(_, values)| values.as_slice())
     }
 
-    /// The quantity by which the motion is aligned in time: the angle, if there is one.
+    /// The quantity by which the motion is aligned in time: the angle, if it rises clearly above its
+    /// noise, else the quantity that does so most. Of a block that falls flat, the angle is noise.
     #[must_use]
     pub fn leading(&self) -> Channel {
-        self.channels.first().map_or(Channel::Phi, |(channel, _)| *channel)
+        let angle = self.channels.iter().find(|(channel, _)| *channel == Channel::Phi);
+        match angle {
+            Some((_, values)) if self.channels.len() == 1 || self.signal(values) >= CLEAR_SIGNAL => Channel::Phi,
+            _ => self.clearest(|_| true, 0.0).unwrap_or(Channel::Phi),
+        }
+    }
+
+    /// The quantity that tells best from which side the motion was seen; `None` if all that would are noise.
+    pub(crate) fn telling_side(&self) -> Option<Channel> {
+        self.clearest(Channel::is_mirrored, LEAST_SIGNAL)
+    }
+
+    /// Of some quantities, that which rises most above its noise, if any does by this factor.
+    fn clearest(&self, of: impl Fn(Channel) -> bool, least: f64) -> Option<Channel> {
+        let candidates = self.channels.iter().filter(|(channel, _)| of(*channel));
+        let mut best: Option<(f64, Channel)> = None;
+        for (channel, values) in candidates {
+            let signal = self.signal(values);
+            if signal >= least && best.is_none_or(|(most, _)| signal > most) {
+                best = Some((signal, *channel));
+            }
+        }
+        best.map(|(_, channel)| channel)
+    }
+
+    /// The standard deviation of values over that of their noise; 0 if they are all the same.
+    fn signal(&self, values: &[f64]) -> f64 {
+        let finite = || values.iter().copied().filter(|value| value.is_finite());
+        let n = (finite().count() as f64).max(1.0);
+        let mean = finite().sum::<f64>() / n;
+        let spread = (finite().map(|value| (value - mean).powi(2)).sum::<f64>() / n).sqrt();
+        if spread > 0.0 { spread / local_fit(&self.t, values, NOISE_WINDOW).noise } else { 0.0 }
     }
 
     /// The median time between rows, s.

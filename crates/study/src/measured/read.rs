@@ -7,6 +7,7 @@ use super::motion::{Channel, MeasuredMotion, Sign};
 use super::table::{TextTable, is_not_a_number, number};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
+use std::ops::RangeInclusive;
 use teeter_scenario::diagnostic::printable;
 use teeter_scenario::dimension::Dimension;
 use teeter_scenario::quantity;
@@ -68,9 +69,13 @@ impl MeasuredError {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
     t: Vec<f64>,
+    /// The line of each row.
+    lines: Vec<usize>,
     channels: Vec<(Channel, Vec<f64>)>,
     markers: Vec<Marker>,
     unread: Vec<String>,
+    /// What was read without a unit.
+    without_unit: BTreeSet<String>,
 }
 
 /// The coordinates of a marker.
@@ -88,6 +93,8 @@ struct Columns<'a> {
     names: Vec<(String, Option<String>)>,
     /// The columns that were read.
     read: RefCell<BTreeSet<usize>>,
+    /// Of these, what has no unit in the heading nor a given one.
+    without_unit: RefCell<BTreeSet<String>>,
 }
 
 impl Measured {
@@ -114,7 +121,8 @@ impl Measured {
             return Err(MeasuredError::NotText(at));
         }
         let table = TextTable::split(text, layout.separator, layout.skip)?;
-        let columns = Columns { table: &table, names: names(&table), read: RefCell::default() };
+        let columns =
+            Columns { table: &table, names: names(&table), read: RefCell::default(), without_unit: RefCell::default() };
         let t = columns.times(layout, block)?;
         let mut markers = Vec::new();
         for spec in &layout.markers {
@@ -159,9 +167,18 @@ impl Measured {
             }
             channels.push((channel, values));
         }
-        let measured = Self { t, channels, markers, unread: columns.unread() };
+        let lines: Vec<usize> = table.rows.iter().map(|(line, _)| *line).collect();
+        leave_out(&layout.leave_out, &lines, &mut channels, &mut markers)?;
+        let without_unit = columns.without_unit.take();
+        let measured = Self { t, lines, channels, markers, unread: columns.unread(), without_unit };
         measured.check(&columns, block)?;
         Ok(measured)
+    }
+
+    /// Whether `t` or a quantity was taken to be in its SI unit, as neither the heading of its column nor the layout gives one.
+    #[must_use]
+    pub fn is_without_unit(&self, name: &str) -> bool {
+        self.without_unit.contains(name)
     }
 
     fn check(&self, columns: &Columns<'_>, block: &str) -> Result<(), MeasuredError> {
@@ -226,7 +243,8 @@ impl Measured {
         }
         channels.sort_by_key(|(channel, _)| *channel);
         let phi_from_first_row = residual.is_some() && !placed;
-        MeasuredMotion { t: self.t.clone(), channels, markers: residual, phi_from_first_row }
+        let (t, lines) = (self.t.clone(), self.lines.clone());
+        MeasuredMotion { t, lines, channels, markers: residual, phi_from_first_row }
     }
 
     /// x, y and φ of the body in each row by a rigid fit to the markers, NaN in rows where one isn't
@@ -288,6 +306,39 @@ impl Marker {
     fn is_seen(&self, row: usize) -> bool {
         self.x[row].is_finite() && self.y[row].is_finite()
     }
+}
+
+/// What a unit of pixels could be instead, if that can be the unit of a quantity of this dimension.
+fn pixels(unit: &str, dimension: Dimension) -> Option<&'static str> {
+    let unit = unit.to_lowercase();
+    let is_pixel = |unit: &str| matches!(unit, "px" | "pix" | "pixel" | "pixels");
+    match dimension {
+        Dimension::LENGTH if is_pixel(&unit) => Some("0.21 mm"),
+        Dimension::VELOCITY if unit.strip_suffix("/s").is_some_and(|unit| is_pixel(unit.trim_end())) => {
+            Some("0.21 mm/s")
+        }
+        _ => None,
+    }
+}
+
+/// Empties the cells of the lines that are left out.
+fn leave_out(
+    wanted: &[RangeInclusive<usize>],
+    lines: &[usize],
+    channels: &mut [(Channel, Vec<f64>)],
+    markers: &mut [Marker],
+) -> Result<(), MeasuredError> {
+    for range in wanted {
+        let rows =
+            lines.partition_point(|line| line < range.start())..lines.partition_point(|line| line <= range.end());
+        if rows.is_empty() {
+            return Err(MeasuredError::line(*range.start(), "to be left out, but there is no row of numbers"));
+        }
+        let columns = channels.iter_mut().map(|(_, values)| values);
+        let columns = columns.chain(markers.iter_mut().flat_map(|marker| [&mut marker.x, &mut marker.y]));
+        columns.for_each(|values| values[rows.clone()].fill(f64::NAN));
+    }
+    Ok(())
 }
 
 /// Titles and units of the heading.
@@ -382,16 +433,22 @@ impl Columns<'_> {
         let scale = match spec.unit.as_deref().or(heading) {
             None => 1.0,
             Some(unit) => factor(unit).map_err(|error| {
-                let told = match unit {
-                    "px" | "pixel" | "pixels" => {
-                        format!("{error}; give the length of a pixel instead, such as unit = \"0.21 mm\"")
+                let told = match pixels(unit, dimension) {
+                    Some(size) if what.starts_with("marker.") => {
+                        format!("{error}; give the length of a pixel instead, such as unit = \"{size}\"")
                     }
-                    _ => error.with_remedy(),
+                    Some(size) => {
+                        format!("{error}; give the length of a pixel instead, such as --unit {what}=\"{size}\"")
+                    }
+                    None => error.with_remedy(),
                 };
                 MeasuredError::Columns(format!("the unit `{}` of {what}: {told}", printable(unit)))
             })?,
         };
         self.read.borrow_mut().insert(place);
+        if spec.unit.as_deref().or(heading).is_none() && dimension != Dimension::NONE {
+            self.without_unit.borrow_mut().insert(what.to_owned());
+        }
         let mut values = Vec::with_capacity(self.table.rows.len());
         for (line, cells) in &self.table.rows {
             let cell = cells[place].as_str();
@@ -519,6 +576,7 @@ impl Columns<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measured::line_ranges;
 
     fn read(text: &str, layout: &ColumnLayout) -> Result<Measured, String> {
         Measured::read(text.as_bytes(), layout, "rocker").map_err(|error| error.to_string())
@@ -569,6 +627,23 @@ mod tests {
     }
 
     #[test]
+    fn lines_that_are_left_out_are_lost_frames() {
+        let text = format!("t,phi\n{}", rows(|k| format!("{k},0.{k:02}")));
+        let leave_out =
+            |lines: &str| ColumnLayout { leave_out: line_ranges(lines).unwrap(), ..ColumnLayout::default() };
+        let measured = read(&text, &leave_out("4, 10-12")).unwrap();
+        assert!(measured.is_without_unit("phi") && measured.is_without_unit("t") && !measured.is_without_unit("x"));
+        let motion = measured.motion(Sign::AsIs);
+        let phi = motion.values(Channel::Phi).unwrap();
+        let lost: Vec<usize> = (0..20).filter(|&row| phi[row].is_nan()).map(|row| motion.lines[row]).collect();
+        assert_eq!((lost.as_slice(), motion.t.len()), (&[4, 10, 11, 12][..], 20));
+        assert_eq!(read(&text, &leave_out("1")).unwrap_err(), "line 1: to be left out, but there is no row of numbers");
+        for wrong in ["", "4;5", "12-10", "-3", "0", "a"] {
+            assert!(line_ranges(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
     fn markers_of_the_same_columns_are_refused() {
         let rows: String = (0..20).map(|k| format!("{k},{},{},{}\n", 3 * k, 2 * k, 5 * k)).collect();
         let read = |toml: &str| {
@@ -606,6 +681,27 @@ mod tests {
             assert!(close(Channel::Phi, 0.07) && close(Channel::X, 0.04) && close(Channel::Y, 0.07));
             assert!(motion.markers.unwrap().rms < 1e-12);
         }
+    }
+
+    #[test]
+    fn a_length_in_pixels_is_given_as_the_text_says() {
+        let table = format!("t,x [Px],vx [px/s],phi [px]\n{}", rows(|k| format!("{k},{k},{k},0.{k:02}")));
+        let of = |units: &[(&str, &str)], columns: &str| {
+            let mut layout = ColumnLayout::default();
+            units.iter().for_each(|(name, unit)| layout.set_unit(name, unit).unwrap());
+            let table: String = table
+                .lines()
+                .map(|line| line.splitn(5, ',').take(columns.len()).collect::<Vec<_>>().join(",") + "\n")
+                .collect();
+            read(&table, &layout)
+        };
+        assert!(of(&[], "tx").unwrap_err().ends_with("such as --unit x=\"0.21 mm\""));
+        let x = ("x", "0.21 mm");
+        assert!(of(&[x], "txv").unwrap_err().ends_with("such as --unit vx=\"0.21 mm/s\""));
+        let vx = ("vx", "0.21 mm/s");
+        let motion = of(&[x, vx], "txv").unwrap().motion(Sign::AsIs);
+        assert!((motion.values(Channel::Vx).unwrap()[10] - 2.1e-3).abs() < 1e-12);
+        assert!(!of(&[x, vx], "txvp").unwrap_err().contains("length of a pixel"), "an angle has none");
     }
 
     #[test]

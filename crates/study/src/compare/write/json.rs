@@ -63,7 +63,9 @@ pub fn json(comparison: &Comparison, block: &str, run: &str, measured: &str) -> 
         "time_shift_found": alignment.shift_found,
         "sign": alignment.sign.factor(),
         "sign_found": alignment.sign_found,
+        "aligned_by": alignment.by.word(),
         "mismatch": alignment.mismatch,
+        "outlier_lines": comparison.outliers.iter().filter_map(|row| comparison.measured.lines.get(*row)).collect::<Vec<_>>(),
         "phi_offset": settings.offset,
         "window_rows": settings.window,
         "interval": comparison.measured.interval(),
@@ -71,7 +73,7 @@ pub fn json(comparison: &Comparison, block: &str, run: &str, measured: &str) -> 
         "compared": {
             "from": t(comparison.rows.start),
             "to": t(comparison.rows.end.saturating_sub(1)),
-            "rows": comparison.rows.len(),
+            "rows": comparison.compared(),
             "of": comparison.measured.t.len(),
         },
         "quantities": channels,

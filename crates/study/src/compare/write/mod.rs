@@ -3,13 +3,16 @@
 mod figure;
 mod json;
 mod page;
+mod sentences;
 mod table;
 
 pub(crate) use figure::motion_figures;
 pub use figure::svg_figures;
 pub use json::json;
+pub use page::page;
 pub(crate) use page::{STYLE, fixed, horizon_note};
-pub use page::{page, sentences_of};
+pub(crate) use sentences::outliers;
+pub use sentences::sentences_of;
 pub use table::{half_cycle_csv, impact_csv, rows_csv};
 
 /// All files that a comparison may write; the figures depend on the table.

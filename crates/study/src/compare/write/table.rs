@@ -13,7 +13,7 @@ fn cell(text: &mut String, value: Option<f64>) {
 
 /// `compare.csv`: a row for each row of the measured table: `t` (of the run), `t_measured` (as in the
 /// table), for each quantity its smoothed measured and simulated values (SI), and whether the row is
-/// compared: `yes`, `no`, or `held` before the release.
+/// compared: `yes`, `no`, or `held` before the release. A row without any value isn't compared.
 #[must_use]
 pub fn rows_csv(comparison: &Comparison) -> String {
     let mut text = "t,t_measured".to_owned();
@@ -29,7 +29,7 @@ pub fn rows_csv(comparison: &Comparison) -> String {
             cell(&mut text, Some(channel.simulated.value[row]));
         }
         text.push_str(match row {
-            row if comparison.rows.contains(&row) => ",yes\n",
+            row if comparison.is_compared(row) => ",yes\n",
             row if comparison.held.contains(&row) => ",held\n",
             _ => ",no\n",
         });
