@@ -13,8 +13,8 @@ use teeter_report::Results;
 use teeter_run::SceneSource;
 use teeter_scenario::diagnostic::Diagnostics;
 use teeter_study::sweep::{
-    Ensemble, FIGURE_FILES, FILES, IDENTITY, Journal, JournalError, RESULTS, Shard, Sweep, SweepIdentity, Tally,
-    ended_study, incomparable, matching_files, merge, run_cases, study_figures, study_page, write_parquet,
+    COARSE_ROWS, Ensemble, FIGURE_FILES, FILES, IDENTITY, Journal, JournalError, RESULTS, Shard, Sweep, SweepIdentity,
+    Tally, ended_study, incomparable, matching_files, merge, run_cases, study_figures, study_page, write_parquet,
     write_results,
 };
 use teeter_study::{StudyScene, runner};
@@ -117,12 +117,8 @@ pub(crate) fn compare(folders: &[PathBuf], out: &Path, figure_width: f64, force:
         console.error(&text);
         Exit::BadInput
     };
-    let name = |folder: &PathBuf| {
-        let canonical = folder.canonicalize().unwrap_or_else(|_| folder.clone());
-        canonical.file_name().map_or_else(|| folder.display().to_string(), |name| name.to_string_lossy().into_owned())
-    };
     let studies: Result<Vec<Ensemble>, JournalError> =
-        folders.iter().map(|folder| ended_study(folder, &name(folder))).collect();
+        folders.iter().zip(distinct_names(folders)).map(|(folder, name)| ended_study(folder, &name)).collect();
     let studies = match studies {
         Ok(studies) => studies,
         Err(error) => return refused(format!("error: {error}")),
@@ -156,12 +152,30 @@ pub(crate) fn compare(folders: &[PathBuf], out: &Path, figure_width: f64, force:
     }
 }
 
+/// The names of folders, each with as many of the folders above it as tell it from the others.
+fn distinct_names(folders: &[PathBuf]) -> Vec<String> {
+    let real: Vec<PathBuf> =
+        folders.iter().map(|folder| folder.canonicalize().unwrap_or_else(|_| folder.clone())).collect();
+    let parts = |folder: &Path, count: usize| {
+        let all: Vec<_> = folder.iter().collect();
+        all[all.len().saturating_sub(count)..].iter().collect::<PathBuf>().display().to_string()
+    };
+    let name = |folder: &PathBuf| {
+        let others = || real.iter().filter(|other| *other != folder);
+        let is_distinct = |count: &usize| others().all(|other| parts(other, *count) != parts(folder, *count));
+        // A folder that stands there twice is the same study.
+        let count = (1..=folder.iter().count()).find(is_distinct).unwrap_or(1);
+        parts(folder, count)
+    };
+    real.iter().map(name).collect()
+}
+
 /// Takes the folder: of a study that continues with its rows.
 fn open(study: &Study, folder: &Path, options: &Options) -> Result<(Results, Journal), JournalError> {
     Results::spares(&FILES, folder, &study.inputs)?;
     if options.resume && folder.join(IDENTITY).exists() {
         let results = Results::reopen_of(&FILES, folder)?;
-        if let Some(journal) = Journal::reopen(folder, &study.identity, &study.sweep)? {
+        if let Some(journal) = Journal::reopen(&results, &study.identity, &study.sweep)? {
             return Ok((results, journal));
         }
     }
@@ -175,8 +189,15 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
     let shard = study.identity.shard();
     let (before, total) = (journal.done(), shard.count(study.sweep.cases()));
     let missing = journal.missing(shard.cases(study.sweep.cases()));
+    if journal.rejected() > 0 {
+        let (lines, are) = if journal.rejected() == 1 { ("line", "was") } else { ("lines", "were") };
+        console.note(&format!(
+            "warning: {} {lines} of the journal {are} removed, being no whole row of this study; their cases run again",
+            journal.rejected()
+        ));
+    }
     if before > 0 {
-        console.note(&format!("{before} of {total} cases are done"));
+        console.note(&format!("{before} of {} {} done", counted(total), if before == 1 { "is" } else { "are" }));
     }
     let bar = CaseBar::new(console, before, total);
     let mut failure = None;
@@ -195,7 +216,9 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
         return Exit::Failed;
     }
     if journal.done() < total {
-        console.note(&format!("interrupted: {} of {total} cases are done; continue with --resume", journal.done()));
+        let (done, of) = (journal.done(), counted(total));
+        let are = if done == 1 { "is" } else { "are" };
+        console.note(&format!("interrupted: {done} of {of} {are} done; continue with --resume"));
         return Exit::Interrupted;
     }
     // Of all rows, those of sessions before this one as well.
@@ -205,8 +228,12 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
     match written {
         // A mistake that concerns all cases, such as a value without its unit, is told in quiet runs, too.
         Ok(tally) if tally.incomplete == tally.cases && shard == Shard::ALL => {
-            console
-                .error(&format!("warning: none of {total} cases has a result; the first one: {}", tally.first_error));
+            let none = if total == 1 {
+                "the only case has no result".to_owned()
+            } else {
+                format!("none of {total} cases has a result; the first one")
+            };
+            console.error(&format!("warning: {none}: {}", tally.first_error));
         }
         Ok(tally) => notes(console, &study.sweep, &tally),
         Err(error) => {
@@ -214,8 +241,16 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
             return Exit::Failed;
         }
     }
-    console.note(&format!("{total} cases in {}", results.folder().join(RESULTS).display()));
+    console.note(&format!("{} in {}", counted(total), results.folder().join(RESULTS).display()));
     Exit::FinishedRun
+}
+
+/// How many outputs a warning names.
+const MOST_NAMED: usize = 3;
+
+/// A number of cases in words.
+fn counted(cases: u64) -> String {
+    if cases == 1 { "1 case".to_owned() } else { format!("{cases} cases") }
 }
 
 /// What the user should know of the rows.
@@ -233,11 +268,26 @@ fn notes(console: Console, sweep: &Sweep, tally: &Tally) {
         let warn = if tally.warned == 1 { "warns" } else { "warn" };
         let codes: Vec<String> = tally.warnings.iter().map(|(code, count)| format!("{code} ({count})")).collect();
         let see = "see the column `warnings`; `teeter run` of such a case tells more";
-        console.note(&format!("warning: {} of {cases} cases {warn}: {}; {see}", tally.warned, codes.join(", ")));
+        let of = counted(*cases);
+        console.note(&format!("warning: {} of {of} {warn}: {}; {see}", tally.warned, codes.join(", ")));
+    }
+    if tally.warnings.iter().any(|(code, _)| code == COARSE_ROWS) {
+        let of_columns: Vec<String> = sweep
+            .outputs()
+            .iter()
+            .filter(|output| output.is_between_rows())
+            .take(MOST_NAMED)
+            .map(|output| format!("`{}`", output.name()))
+            .collect();
+        console.note(&format!(
+            "warning: {COARSE_ROWS}: between two rows of trajectory.csv, outputs such as {} may be off by more than 1 % of the largest value: \
+             `at` is interpolated linearly there, and what is larger than in both rows is missed; make `output.every` shorter",
+            of_columns.join(", ")
+        ));
     }
     if *several_limits > 0 {
         let text = "there are several limits: the lowest one seen is in the table, their number in `find.changes`";
-        console.note(&format!("in {several_limits} of {cases} cases {text}"));
+        console.note(&format!("in {several_limits} of {} {text}", counted(*cases)));
     } else if sweep.bisects_blindly() && cases > incomplete {
         console.note("a bisection sees one limit of several: `scan` under [find] also runs values in between");
     }
@@ -321,8 +371,23 @@ fn prepare(path: &Path, shard: Shard) -> Result<Study, String> {
     sweep.check_keys(&source, &name).map_err(|found| present(&found))?;
     sweep.check_outputs(&source, &text, &name).map_err(|found| present(&found))?;
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    let identity = SweepIdentity::new(&text, source.contents(), sweep.cases(), shard).titled(&stem);
+    let identity = SweepIdentity::new(&text, source.contents(), sweep.cases(), shard)
+        .reading(source.named_contents())
+        .titled(&stem);
     let named = source.files().map(|file| scene.place(file));
     let inputs = [path.to_owned(), folder.join(sweep.scene())].into_iter().chain(named).collect();
     Ok(Study { sweep, source, identity, inputs })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_of_the_same_name_are_told_apart() {
+        let names = |folders: &[&str]| distinct_names(&folders.iter().map(PathBuf::from).collect::<Vec<_>>());
+        assert_eq!(names(&["a/s", "b/s", "c/t"]), ["a/s", "b/s", "t"]);
+        assert_eq!(names(&["x/a/s", "y/a/s", "b/s"]), ["x/a/s", "y/a/s", "b/s"]);
+        assert_eq!(names(&["a/s", "a/s"]), ["s", "s"]);
+    }
 }

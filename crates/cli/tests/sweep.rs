@@ -157,7 +157,8 @@ fn a_study_continues_after_a_kill_to_the_same_bytes() {
         assert_eq!(std::fs::read_to_string(left.join("journal.csv")).unwrap(), journal);
         let out = format!("left-{kept}");
         let told = done(&folder, &["sweep", "sweep.toml", "--out", &out, "--resume"]);
-        assert!(kept == 0 || told.contains(&format!("{kept} of 12 cases are done")), "{told}");
+        let are = if kept == 1 { "is" } else { "are" };
+        assert!(kept == 0 || told.contains(&format!("{kept} of 12 cases {are} done")), "{told}");
         assert_eq!(std::fs::read_to_string(left.join("results.csv")).unwrap(), whole);
         let typed = |folder: &Path| std::fs::read(folder.join("results.parquet")).ok();
         assert_eq!(typed(&left), typed(&folder.join("all")));
@@ -172,6 +173,58 @@ fn a_study_continues_after_a_kill_to_the_same_bytes() {
     let again = teeter(&folder, &["sweep", "sweep.toml", "--out", "all"]);
     assert_eq!(again.status.code(), Some(2));
     assert_eq!(std::fs::read_to_string(folder.join("all/results.csv")).unwrap(), whole);
+}
+
+#[test]
+fn lines_of_a_journal_that_are_no_rows_are_counted_and_run_again() {
+    let folder = study("garbage", SWEEP);
+    done(&folder, &["sweep", "sweep.toml", "--out", "all"]);
+    let whole = std::fs::read_to_string(folder.join("all/results.csv")).unwrap();
+    let lines: Vec<&str> = whole.split_inclusive('\n').collect();
+    let left = folder.join("left");
+    std::fs::create_dir_all(&left).unwrap();
+    std::fs::copy(folder.join("all/sweep.json"), left.join("sweep.json")).unwrap();
+    // Another program's line, a row without its end, one of no case, and what a broken disk leaves.
+    let journal = [lines[0], lines[3], "hello\n", "4,0.4\n", &lines[1].replacen('0', "99", 1), lines[9]].concat();
+    std::fs::write(left.join("journal.csv"), [journal.as_bytes(), b"\xff\xfe\n"].concat()).unwrap();
+    let told = done(&folder, &["sweep", "sweep.toml", "--out", "left", "--resume"]);
+    assert!(told.contains("warning: 4 lines of the journal were removed, being no whole row of this study"), "{told}");
+    assert!(told.contains("2 of 12 cases are done"), "{told}");
+    assert_eq!(std::fs::read_to_string(left.join("results.csv")).unwrap(), whole);
+}
+
+#[test]
+fn rows_that_are_too_far_apart_for_an_output_are_told_once() {
+    let sweep = |every: &str| {
+        format!(
+            "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\", \"4 deg\"]\noutput.every = [\"{every}\"]\n\
+             [outputs]\nearly = {{ at = \"90 ms\", of = \"rocker.phi\" }}\nlast = {{ final = \"rocker.phi\" }}\n"
+        )
+    };
+    let folder = study("coarse", &sweep("60 ms"));
+    let told = done(&folder, &["sweep", "sweep.toml", "--out", "coarse"]);
+    assert!(told.contains("warning: 2 of 2 cases warn: coarse-rows (2)"), "{told}");
+    assert_eq!(told.matches("outputs such as `early` may be off").count(), 1, "{told}");
+    std::fs::write(folder.join("sweep.toml"), sweep("1 ms")).unwrap();
+    assert!(!done(&folder, &["sweep", "sweep.toml", "--out", "fine"]).contains("coarse"));
+}
+
+#[test]
+fn bands_say_of_how_many_cases_they_are_past_the_end_of_some() {
+    let sweep = "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = { from = \"8 deg\", to = \"14 deg\", count = 4 }\n\
+        time.end = [\"1 s\"]\ntime.stop = ['[\"overturned\"]']\n[bands]\nof = \"rocker.phi\"\nuntil = \"1 s\"\ntimes = 90\n";
+    let folder = study("survivors", sweep);
+    let output = teeter(&folder, &["sweep", "sweep.toml", "--out", "all"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    let bands = table(&folder.join("all/bands.csv"));
+    // 90 times after t = 0.
+    let cases: Vec<&str> = bands[1..].iter().map(|row| row[2].as_str()).collect();
+    assert_eq!((cases.len(), cases[0]), (91, "4"));
+    let last = cases[90];
+    assert!(last != "4", "some case overturns: {cases:?}");
+    let told = format!("fewer than all 4 cases, {last} at the end");
+    let figure = std::fs::read_to_string(folder.join("all/figures/bands.svg")).unwrap();
+    assert!(said.contains(&told) && figure.contains(&told), "{said}");
 }
 
 #[test]
@@ -405,6 +458,11 @@ fn files_are_an_axis() {
     }
     let none = "`none` is empty in all cases: the scene has no record at ground.motion.y";
     assert!(told.contains(none), "{told}");
+    // One more file matches the pattern.
+    std::fs::copy(folder.join("records/a.csv"), folder.join("records/c.csv")).unwrap();
+    let output = teeter(&folder, &["sweep", "sweep.toml", "--out", "out", "--resume"]);
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.ends_with("files that the scene reads have changed since: `../records/c.csv` is new\n"), "{told}");
 }
 
 /// ω² times the largest displacement of an oscillator of this period and 5 % damping, whose support is
@@ -469,7 +527,7 @@ fn the_limit_of_overturning_is_that_of_the_formula() {
     assert_eq!(rows[1][2], "", "{rows:?}");
     std::fs::write(folder.join("sweep.toml"), sweep.replace("[find]\n", "[find]\nscan = 4\n")).unwrap();
     let told = done(&folder, &["sweep", "sweep.toml", "--out", "seen"]);
-    assert!(told.contains("in 1 of 1 cases there are several limits"), "{told}");
+    assert!(told.contains("in 1 of 1 case there are several limits"), "{told}");
     let rows = table(&folder.join("seen/results.csv"));
     assert_eq!(rows[1][4..7], ["no", "no", "2"], "{rows:?}");
     assert!((rows[1][2].parse::<f64>().unwrap() - 1.2237).abs() < 3e-4, "{rows:?}");
@@ -556,6 +614,17 @@ fn studies_are_compared_and_a_study_does_not_differ_from_itself() {
     let median = |row: &[String]| row[2].parse::<f64>().unwrap();
     assert_eq!((rows[1][0].as_str(), rows[2][0].as_str()), ("one", "squat"));
     assert!(median(&rows[2]) > 1.05 * median(&rows[1]), "a squatter block takes more: {rows:?}");
+    // Of the same name, studies are told apart by the folders that they are in.
+    for (study, above) in [("one", "a"), ("squat", "b")] {
+        std::fs::create_dir_all(folder.join(above)).unwrap();
+        std::fs::rename(folder.join(study), folder.join(above).join("s")).unwrap();
+    }
+    done(&folder, &["sweep", "--compare", "a/s", "b/s", "--out", "named"]);
+    let named = table(&folder.join("named/fragility.csv"));
+    assert_eq!((named[1][0].as_str(), named[2][0].as_str()), ("a/s", "b/s"));
+    for (study, above) in [("one", "a"), ("squat", "b")] {
+        std::fs::rename(folder.join(above).join("s"), folder.join(study)).unwrap();
+    }
     let tests = table(&folder.join("both/distribution_tests.csv"));
     assert_eq!((tests.len(), tests[1][0].as_str(), tests[1][1].as_str()), (2, "squat", "one"));
     let refused = teeter(&folder, &["sweep", "--compare", "one", "none", "--out", "x"]);

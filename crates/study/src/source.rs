@@ -92,6 +92,11 @@ impl StudyScene {
         self.files.keys().map(String::as_str)
     }
 
+    /// These with their bytes.
+    pub fn named_contents(&self) -> impl Iterator<Item = (&str, &[u8])> {
+        self.files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()))
+    }
+
     /// The scene with a setting.
     ///
     /// # Errors

@@ -10,6 +10,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use teeter_report::{EndedWord, Recorder, Summary};
 
+/// The code of the warning that rows are too far apart for an output.
+pub const COARSE_ROWS: &str = "coarse-rows";
+
 /// How a case ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -216,13 +219,19 @@ fn run_once(
         None
     };
     let outputs = sweep.outputs().iter().map(|output| output.cell(summary.as_ref(), &columns, &scene)).collect();
+    let mut warnings: Vec<String> = record.warnings.warnings().iter().map(|warning| warning.code.to_string()).collect();
+    // Rows of all steps are as close as they can be.
+    let is_thinned = (columns.rows() as u64) < state.step;
+    if is_thinned && sweep.outputs().iter().any(|output| output.is_coarse(&columns)) {
+        warnings.push(COARSE_ROWS.to_owned());
+    }
     Some(CaseRow {
         number,
         status: CaseStatus::Ran(word),
         found: None,
         outputs,
         unsolved_steps: state.tally.unconverged_steps,
-        warnings: record.warnings.warnings().iter().map(|warning| warning.code.to_string()).collect(),
+        warnings,
         error,
     })
 }

@@ -1,8 +1,10 @@
 //! What decides the rows of a study: they can be continued and merged only where it is the same.
 
 use super::Shard;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
 use teeter_report::content_hash;
+use teeter_scenario::diagnostic::printable;
 
 /// The file of a folder of results that holds it.
 pub const IDENTITY: &str = "sweep.json";
@@ -15,9 +17,16 @@ pub struct SweepIdentity {
     program: String,
     sweep: String,
     inputs: String,
+    /// The files that the scene reads, each with the beginning of its hash: what has changed is told by them.
+    files: BTreeMap<String, String>,
     cases: u64,
     shard: Shard,
 }
+
+/// Digits of the hash of a file.
+const FILE_DIGITS: usize = 16;
+/// Most files that a message names.
+const MOST_NAMED: usize = 5;
 
 /// Why rows don't belong together.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -40,6 +49,17 @@ pub enum SweepIdentityError {
     /// The scene, or a file that it reads, has changed.
     #[error("the scene, or a file that it reads, has changed since")]
     Inputs,
+    /// Files that the scene reads have changed, or the files that a pattern matches: which.
+    #[error("files that the scene reads have changed since: {0}")]
+    Files(String),
+    /// The same patterns of files make another number of cases.
+    #[error("the files that its patterns match have changed since: cases then: {then}, now: {now}")]
+    Matches {
+        /// The number of cases then.
+        then: u64,
+        /// Now.
+        now: u64,
+    },
     /// Another shard.
     #[error("it holds shard {then}, not {now}")]
     Shard {
@@ -60,9 +80,21 @@ impl SweepIdentity {
             program: env!("CARGO_PKG_VERSION").to_owned(),
             sweep: sweep.to_owned(),
             inputs,
+            files: BTreeMap::new(),
             cases,
             shard,
         }
+    }
+
+    /// The same study with the names and bytes of the files that its scene reads.
+    #[must_use]
+    pub fn reading<'a>(self, files: impl IntoIterator<Item = (&'a str, &'a [u8])>) -> Self {
+        let digits = |bytes: &[u8]| {
+            let hash: String = content_hash([bytes]).iter().map(|byte| format!("{byte:02x}")).collect();
+            hash[..FILE_DIGITS].to_owned()
+        };
+        let files = files.into_iter().map(|(name, bytes)| (name.to_owned(), digits(bytes))).collect();
+        Self { files, ..self }
     }
 
     /// The same study with a title.
@@ -104,9 +136,10 @@ impl SweepIdentity {
     /// As the text of its file.
     #[must_use]
     pub fn to_json(&self) -> String {
-        let Self { title, program, sweep, inputs, cases, shard } = self;
+        let Self { title, program, sweep, inputs, files, cases, shard } = self;
         let value = json!({
-            "title": title, "program": program, "cases": cases, "shard": shard.to_string(), "inputs_sha256": inputs, "sweep": sweep,
+            "title": title, "program": program, "cases": cases, "shard": shard.to_string(), "inputs_sha256": inputs, "files": files,
+            "sweep": sweep,
         });
         format!("{value:#}\n")
     }
@@ -124,6 +157,8 @@ impl SweepIdentity {
                 program: text("program")?,
                 sweep: text("sweep")?,
                 inputs: text("inputs_sha256")?,
+                // Older versions don't write them.
+                files: value.get("files").and_then(Value::as_object).map(files_of).unwrap_or_default(),
                 cases: value.get("cases")?.as_u64()?,
                 shard: text("shard")?.parse().ok()?,
             })
@@ -139,13 +174,36 @@ impl SweepIdentity {
         if then.program != self.program {
             return Err(SweepIdentityError::Program { then: then.program.clone(), now: self.program.clone() });
         }
-        if then.sweep != self.sweep || then.cases != self.cases {
+        if then.sweep != self.sweep {
             return Err(SweepIdentityError::Sweep);
         }
-        if then.inputs != self.inputs {
-            return Err(SweepIdentityError::Inputs);
+        if then.inputs == self.inputs && then.cases == self.cases {
+            return Ok(());
         }
-        Ok(())
+        Err(match self.changed(then) {
+            Some(files) => SweepIdentityError::Files(files),
+            None if then.cases != self.cases => SweepIdentityError::Matches { then: then.cases, now: self.cases },
+            None => SweepIdentityError::Inputs,
+        })
+    }
+
+    /// The files that are not those of `then`; `None` if that is unknown, or they are the same.
+    fn changed(&self, then: &Self) -> Option<String> {
+        // An older version has named none.
+        if then.files.is_empty() {
+            return None;
+        }
+        let name = |name: &str, what: &str| format!("`{}` {what}", printable(name));
+        let gone = then.files.keys().filter(|file| !self.files.contains_key(*file)).map(|file| name(file, "is gone"));
+        let changed = self.files.iter().filter_map(|(file, hash)| match then.files.get(file) {
+            None => Some(name(file, "is new")),
+            Some(before) if before != hash => Some(name(file, "is another")),
+            Some(_) => None,
+        });
+        let all: Vec<String> = gone.chain(changed).collect();
+        let more = all.len().saturating_sub(MOST_NAMED);
+        let and_more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        (!all.is_empty()).then(|| all[..all.len().min(MOST_NAMED)].join(", ") + &and_more)
     }
 
     /// Whether a folder of `then` can be continued as this study and shard.
@@ -162,6 +220,11 @@ impl SweepIdentity {
     }
 }
 
+/// Files by their names.
+fn files_of(map: &Map<String, Value>) -> BTreeMap<String, String> {
+    map.iter().filter_map(|(name, hash)| Some((name.clone(), hash.as_str()?.to_owned()))).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -176,6 +239,19 @@ mod tests {
         let other = of("scene = \"a\"\n", b"[time]", "2/2");
         assert_eq!(own.admit(&other).unwrap_err().to_string(), "it holds shard 2/2, not 1/2");
         assert_eq!(own.admit_study(&other), Ok(()));
+        let reading = |files: &[(&'static str, &'static [u8])], cases: u64| {
+            let inputs: Vec<&[u8]> = files.iter().map(|(_, bytes)| *bytes).collect();
+            SweepIdentity::new("s", inputs, cases, Shard::ALL).reading(files.iter().copied())
+        };
+        let own = reading(&[("a.AT2", b"1"), ("b.AT2", b"2"), ("d.AT2", b"2")], 3);
+        assert_eq!(SweepIdentity::from_json(&own.to_json()), Ok(own.clone()));
+        let told = |then: SweepIdentity| own.admit(&then).unwrap_err().to_string();
+        assert_eq!(
+            told(reading(&[("a.AT2", b"1"), ("b.AT2", b"3"), ("c.AT2", b"3")], 3)),
+            "files that the scene reads have changed since: `c.AT2` is gone, `b.AT2` is another, `d.AT2` is new"
+        );
+        let older = SweepIdentity { files: BTreeMap::new(), ..reading(&[("a.AT2", b"1")], 1) };
+        assert_eq!(told(older), "the files that its patterns match have changed since: cases then: 1, now: 3");
         assert_eq!(SweepIdentity::from_json("{}"), Err(SweepIdentityError::Unreadable));
     }
 }

@@ -117,6 +117,8 @@ pub struct Journal {
     path: PathBuf,
     file: File,
     done: Done,
+    /// Lines that were none of this study's rows.
+    rejected: usize,
 }
 
 /// The cases that have a row, a bit each.
@@ -154,16 +156,17 @@ impl Journal {
         results.write(JOURNAL, sweep.header())?;
         let mut file = File::options().write(true).open(&path).map_err(io_error(&path))?;
         file.seek(SeekFrom::End(0)).map_err(io_error(&path))?;
-        Ok(Self { path, file, done: Done::default() })
+        Ok(Self { path, file, done: Done::default(), rejected: 0 })
     }
 
     /// The journal of the study of `identity` in a folder, with the rows that it holds. A row that a
-    /// kill cut is removed. `None` if the folder holds no study; a study that has ended has all its
+    /// kill cut is removed, and so are [lines that are no rows](Self::rejected). `None` if the folder holds no study; a study that has ended has all its
     /// rows.
     ///
     /// # Errors
     /// If the folder holds another study, or a file can't be read or written.
-    pub fn reopen(folder: &Path, identity: &SweepIdentity, sweep: &Sweep) -> Result<Option<Self>, JournalError> {
+    pub fn reopen(results: &Results, identity: &SweepIdentity, sweep: &Sweep) -> Result<Option<Self>, JournalError> {
+        let folder = results.folder();
         let place = folder.join(IDENTITY);
         let text = match fs::read_to_string(&place) {
             Ok(text) => text,
@@ -193,20 +196,32 @@ impl Journal {
             return Err(JournalError::Table { path, source: TableError::OtherColumns });
         }
         let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
-        let mut file = File::options().write(true).open(&path).map_err(io_error(&path))?;
-        file.set_len(whole as u64).map_err(io_error(&path))?;
-        file.seek(SeekFrom::End(0)).map_err(io_error(&path))?;
-        if whole == 0 {
-            file.write_all(sweep.header().as_bytes()).map_err(io_error(&path))?;
-        }
-        let mut done = Done::default();
-        for line in String::from_utf8_lossy(&bytes[..whole]).lines() {
-            // Any other number is none of this study's.
-            if let Some(case) = number_of(line).filter(|&case| case < sweep.cases()) {
-                done.insert(case);
+        let columns = cells_of(&sweep.header()).unwrap_or(0);
+        let (mut done, mut rejected, mut rows) = (Done::default(), 0, Vec::new());
+        for line in bytes[..whole].split_inclusive(|&byte| byte == b'\n').skip(1) {
+            match row_of(line, columns).filter(|&case| case < sweep.cases()) {
+                Some(case) => {
+                    done.insert(case);
+                    rows.extend_from_slice(line);
+                }
+                None => rejected += 1,
             }
         }
-        Ok(Some(Self { path, file, done }))
+        if whole == 0 || rejected > 0 {
+            results.write(JOURNAL, [sweep.header().as_bytes(), &rows].concat())?;
+        }
+        let mut file = File::options().write(true).open(&path).map_err(io_error(&path))?;
+        if whole > 0 && rejected == 0 {
+            file.set_len(whole as u64).map_err(io_error(&path))?;
+        }
+        file.seek(SeekFrom::End(0)).map_err(io_error(&path))?;
+        Ok(Some(Self { path, file, done, rejected }))
+    }
+
+    /// How many lines were removed when the journal was opened, as they were no rows of its study.
+    #[must_use]
+    pub fn rejected(&self) -> usize {
+        self.rejected
     }
 
     /// Number of cases with a row.
@@ -235,6 +250,19 @@ impl Journal {
         self.done.insert(case);
         Ok(())
     }
+}
+
+/// The case of a line with its end, if it is a row of so many columns.
+fn row_of(line: &[u8], columns: usize) -> Option<u64> {
+    let line = std::str::from_utf8(line).ok()?;
+    number_of(line).filter(|_| cells_of(line) == Some(columns))
+}
+
+/// The number of cells of a line; `None` if it is empty.
+fn cells_of(line: &str) -> Option<usize> {
+    let mut record = csv::StringRecord::new();
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(line.as_bytes());
+    reader.read_record(&mut record).ok()?.then_some(record.len())
 }
 
 /// The case of a row; `None` for the header.

@@ -26,7 +26,7 @@ mod shard;
 pub(crate) mod spec;
 mod tally;
 
-pub use case::{CaseRow, CaseStatus, run_cases};
+pub use case::{COARSE_ROWS, CaseRow, CaseStatus, run_cases};
 pub use figures::{
     Ensemble, FIGURE_FILES, StudyFigure, StudyTable, TableError, incomparable, study_figures, study_page,
 };

@@ -42,6 +42,9 @@ pub struct Output {
     origin: Origin,
 }
 
+/// An output that may be off by more than this share of the largest value of its column has too few rows.
+const COARSE: f64 = 0.01;
+
 const WORDS: [&str; 7] = ["max", "min", "max_abs", "final", "at", "spectral_acceleration", "of"];
 
 impl Output {
@@ -187,6 +190,18 @@ impl Output {
         Some(Self { name: name.to_owned(), origin: Origin::Column { name: column.to_owned(), reduction } })
     }
 
+    /// Whether it depends on what the motion does between rows.
+    #[must_use]
+    pub fn is_between_rows(&self) -> bool {
+        matches!(&self.origin, Origin::Column { reduction, .. } if *reduction != Reduction::Final)
+    }
+
+    /// Whether rows are too far apart for it: what its interpolation between two rows, or a peak between rows, may be off by.
+    pub(crate) fn is_coarse(&self, columns: &Columns) -> bool {
+        let Origin::Column { name, reduction } = &self.origin else { return false };
+        columns.may_be_off(name, reduction).is_some_and(|(off, scale)| off > COARSE * scale)
+    }
+
     /// The text of its cell: empty where there is no such value.
     pub(crate) fn cell(&self, summary: Option<&Summary>, columns: &Columns, scene: &Scene) -> String {
         match &self.origin {
@@ -306,6 +321,49 @@ impl Columns {
         }
     }
 
+    /// Number of rows.
+    pub(crate) fn rows(&self) -> usize {
+        self.times.len()
+    }
+
+    /// How much a value may be off as its column is known in rows only, by the curvature of the rows about it, and the largest magnitude of the
+    /// column.
+    fn may_be_off(&self, name: &str, reduction: &Reduction) -> Option<(f64, f64)> {
+        let place = self.names.iter().position(|known| known == name)?;
+        let values = self.values.get(place)?;
+        let scale = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        // Half of the second derivative at a row between two others.
+        let bend = |row: usize| {
+            let (a, b, c) = (row.checked_sub(1)?, row, row + 1);
+            let slope = |from: usize, to: usize| -> Option<f64> {
+                Some((values.get(to)? - values.get(from)?) / (self.times.get(to)? - self.times.get(from)?))
+            };
+            Some((slope(b, c)? - slope(a, b)?) / (self.times.get(c)? - self.times.get(a)?))
+        };
+        let off = match reduction {
+            Reduction::Final => 0.0,
+            Reduction::At(time) => {
+                let after = self.times.partition_point(|t| *t < *time);
+                let (before, t) = (after.checked_sub(1)?, *self.times.get(after)?);
+                let largest = [before, after].into_iter().filter_map(bend).fold(0.0, |most: f64, x| most.max(x.abs()));
+                largest * (time - self.times[before]) * (t - time)
+            }
+            Reduction::Max | Reduction::Min | Reduction::MaxAbs => {
+                let height = |row: &usize| match reduction {
+                    Reduction::Min => -values[*row],
+                    Reduction::MaxAbs => values[*row].abs(),
+                    _ => values[*row],
+                };
+                let top = (0..values.len()).max_by(|a, b| height(a).total_cmp(&height(b)))?;
+                let (before, after) = (top.checked_sub(1)?, top + 1);
+                let width = self.times.get(after)? - self.times[before];
+                // The vertex of a parabola is at most half a distance of rows from its highest row.
+                bend(top)?.abs() * (0.25 * width).powi(2)
+            }
+        };
+        Some((off, scale))
+    }
+
     /// `None` outside the times of the table.
     fn interpolated(&self, values: &[f64], time: f64) -> Option<f64> {
         let after = self.times.partition_point(|t| *t < time);
@@ -347,6 +405,30 @@ mod tests {
         assert_eq!(value(Reduction::At(0.75)), Some(-0.5));
         assert_eq!(value(Reduction::At(1.25)), None);
         assert_eq!(columns.reduced("none", &Reduction::Max), None);
+    }
+
+    #[test]
+    fn rows_that_are_too_far_apart_for_an_output_are_known() {
+        let coarse = |distance: f64, reduction: Reduction| {
+            let row = |k: u32| {
+                let t = distance * f64::from(k);
+                format!("{t:?},{:?}\n", (t + 0.3).sin())
+            };
+            let rows: String = (0..=(6.0 / distance) as u32).map(row).collect();
+            let columns = Columns::read("t,b.phi\n", &rows, &["b.phi"]);
+            let origin = Origin::Column { name: "b.phi".to_owned(), reduction };
+            Output { name: "o".to_owned(), origin }.is_coarse(&columns)
+        };
+        // Linear between rows a sine is off by up to d²/8: more than 1 % beyond d = 0.28.
+        for (distance, is_coarse) in [(0.05, false), (0.2, false), (0.4, true)] {
+            for reduction in [Reduction::Max, Reduction::Min, Reduction::MaxAbs] {
+                assert_eq!(coarse(distance, reduction.clone()), is_coarse, "{distance} {reduction:?}");
+            }
+            // In the middle between two rows near the top.
+            let middle = ((1.25 / distance).floor() + 0.5) * distance;
+            assert_eq!(coarse(distance, Reduction::At(middle)), is_coarse, "{distance}");
+            assert!(!coarse(distance, Reduction::At(distance)) && !coarse(distance, Reduction::Final));
+        }
     }
 
     #[test]

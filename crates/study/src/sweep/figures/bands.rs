@@ -3,7 +3,7 @@
 use super::super::output::Output;
 use super::super::spec::{Node, Reader, entries};
 use super::label::{common, quantity};
-use super::{Ensemble, StudyFigure, digits, text};
+use super::{Ensemble, StudyFigure, counted, digits, text};
 use crate::write::quoted;
 use std::fmt::Write;
 use teeter_plot::{Axis, AxisError, Figure, Legend, Panel, Series};
@@ -123,6 +123,18 @@ fn rows(study: &Ensemble, asked: &Bands) -> Vec<Row> {
     asked.times().filter_map(at).collect()
 }
 
+/// How many of the cases the bands are of at their end, and from when on some are missing; `None` if none is. `until` is the last time asked
+/// for, at which no case may be left.
+fn survivors(rows: &[Row], until: Option<f64>) -> Option<String> {
+    let most = rows.iter().map(|row| row.cases).max()?;
+    let last = rows.last()?;
+    let fewer = rows.iter().find(|row| row.cases < most);
+    let end = until.filter(|until| *until > last.t);
+    let from = fewer.map(|row| row.t).or(end)?;
+    let left = if end.is_some() { 0 } else { last.cases };
+    Some(format!("from t = {} s on fewer than all {}, {left} at the end", digits(from), counted(most)))
+}
+
 /// The figure of one study, or of several side by side.
 pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
     let asked: Vec<&Bands> = studies.iter().filter_map(|study| study.sweep.wanted().bands.as_ref()).collect();
@@ -132,6 +144,7 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
     let y = Axis::linear(&label, all.iter().flatten().flat_map(|row| row.below))?;
     let mut table = "study,t,cases,p2.5,p16,median,p84,p97.5\n".to_owned();
     let (mut series, mut summary, mut notes) = (Vec::new(), Vec::new(), Vec::new());
+    let mut captions: Vec<String> = Vec::new();
     for (number, (study, rows)) in studies.iter().zip(&all).enumerate() {
         for Row { t, cases, below } in rows {
             let _ = write!(table, "{},{t:?},{cases}", quoted(&study.name));
@@ -150,9 +163,11 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
         let width = |row: &Row| row.below[4] - row.below[0];
         let widest = rows.iter().max_by(|a, b| width(a).total_cmp(&width(b)));
         if let (Some(last), Some(widest)) = (rows.last(), widest) {
+            let at_end = rows.iter().map(|row| row.cases).max().filter(|most| last.cases < *most);
             summary.push(vec![
                 study.name.clone(),
-                last.cases.to_string(),
+                rows.iter().map(|row| row.cases).max().unwrap_or(0).to_string(),
+                at_end.map_or_else(String::new, |_| last.cases.to_string()),
                 digits(width(widest)),
                 digits(widest.t),
                 digits(width(last)),
@@ -160,15 +175,16 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
             ]);
             if last.cases < FEWEST {
                 notes.push(study.about(&format!(
-                    "{} cases: the band of 95 % goes nearly from the least to the largest of them; {FEWEST} or more have some outside it.",
-                    last.cases
+                    "{}: the band of 95 % goes nearly from the least to the largest of them; {FEWEST} or more have some outside it.",
+                    counted(last.cases)
                 )));
             }
         }
-        let fewest = rows.iter().map(|row| row.cases).min().unwrap_or(0);
-        let most = rows.iter().map(|row| row.cases).max().unwrap_or(0);
-        if fewest < most {
-            notes.push(study.about(&format!("{fewest} to {most} cases have a value, as some end before others.")));
+        if let Some(survivors) = survivors(rows, asked[number].times().last()) {
+            notes.push(study.about(&format!(
+                "{survivors}. Those that ended before, as by `time.stop`, are not in the bands from then on: these are of the others alone."
+            )));
+            captions.push(if study.name.is_empty() { survivors } else { format!("{}: {survivors}", study.name) });
         }
         if study.table.incomplete() > 0 {
             notes.push(study.left_out(study.table.incomplete(), "a result"));
@@ -180,7 +196,7 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
             .to_owned(),
     );
     let title = format!("Bands: {label}");
-    let panel = Panel::new(y).with(series);
+    let panel = Panel::new(y).with(series).note((!captions.is_empty()).then(|| captions.join("; ")));
     Ok(StudyFigure {
         name: "bands",
         figure: Figure::new("bands", title.clone(), x).legend(Legend::Rows).panel(panel),
@@ -189,7 +205,7 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
         tables: vec![("bands.csv", table)],
         notes,
         summary: (
-            ["Study", "Cases", "Largest width of 95 %", "at t (s)", "Width at the end", "t (s)"]
+            ["Study", "Cases", "Cases at the end", "Largest width of 95 %", "at t (s)", "Width at the end", "t (s)"]
                 .map(str::to_owned)
                 .into(),
             summary,
@@ -209,6 +225,17 @@ mod tests {
         assert_eq!(quantile(&[1.0, 2.0], 0.25), 1.25);
         assert_eq!(quantile(&[3.0], 0.975), 3.0);
         assert!(quantile(&[], 0.5).is_nan());
+    }
+
+    #[test]
+    fn bands_past_the_end_of_some_cases_say_so() {
+        let rows = |cases: &[usize]| -> Vec<Row> {
+            cases.iter().enumerate().map(|(k, cases)| Row { t: k as f64, cases: *cases, below: [0.0; 5] }).collect()
+        };
+        assert_eq!(survivors(&rows(&[40, 40, 40]), Some(2.0)), None);
+        let told = |cases: &[usize], until| survivors(&rows(cases), Some(until)).unwrap();
+        assert_eq!(told(&[40, 40, 38, 9], 3.0), "from t = 2 s on fewer than all 40 cases, 9 at the end");
+        assert_eq!(told(&[40, 40], 2.0), "from t = 2 s on fewer than all 40 cases, 0 at the end");
     }
 
     #[test]

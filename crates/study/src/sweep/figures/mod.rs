@@ -133,7 +133,7 @@ impl Ensemble {
 }
 
 /// A number of cases.
-fn counted(cases: usize) -> String {
+pub(super) fn counted(cases: usize) -> String {
     if cases == 1 { "1 case".to_owned() } else { format!("{cases} cases") }
 }
 

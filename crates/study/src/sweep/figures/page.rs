@@ -1,7 +1,7 @@
 //! `study.html`: a self-contained page in the style of a run's report.
 
 use super::label::label;
-use super::{Ensemble, StudyFigure};
+use super::{Ensemble, StudyFigure, counted};
 use crate::write::{html_list, html_table};
 use std::fmt::Write;
 use teeter_plot::escaped;
@@ -25,7 +25,7 @@ pub fn study_page(title: &str, studies: &[Ensemble], figures: &[StudyFigure]) ->
             some => format!(", {some} with warnings"),
         };
         let name = if studies.len() > 1 { format!("{}: ", study.name) } else { String::new() };
-        format!("{name}{} cases{failed}{warned}", study.table.len())
+        format!("{name}{}{failed}{warned}", counted(study.table.len()))
     };
     let subtitle = studies.iter().map(told).collect::<Vec<_>>().join(" · ");
     let subtitle = format!("{subtitle} · teeter {}", env!("CARGO_PKG_VERSION"));
