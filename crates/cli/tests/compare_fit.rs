@@ -624,6 +624,10 @@ fn a_flat_fall_is_aligned_by_its_height_and_wrong_units_are_guessed() {
         text.contains("(assumed: no quantity that would tell the side") && !text.contains("hardly match"),
         "{text}"
     );
+    // A run that turns, matched by its height: the angles are apart, and by no constant.
+    done(&folder, &["run", &scene, "--out", "turned", "--quiet", "--no-report", "--set", "block.cube.angle=2 deg"]);
+    let text = done(&folder, &["compare", "turned", "fall.csv"]);
+    assert!(text.contains("aligned by y") && !text.contains("apart by a constant"), "{text}");
     let rows: String = frames.iter().map(|row| format!("{},{}\n", 1e3 * row[0], row[2])).collect();
     std::fs::write(folder.join("ms.csv"), format!("t,y\n{rows}")).unwrap();
     let told = String::from_utf8(teeter(&folder, &["compare", "run", "ms.csv", "--force"]).stderr).unwrap();

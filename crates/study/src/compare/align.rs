@@ -117,10 +117,10 @@ fn align_without(
             Some(shift) => (shift, search.mismatch(shift).unwrap_or(f64::INFINITY)),
             None => search.best(),
         };
-        let (of_side, tells_side) = match side_mismatch(&counted, trace, end, shift) {
-            _ if search.channel.is_mirrored() => (mismatch, true),
-            Some(of_side) => (of_side, true),
-            None => (mismatch, false),
+        let (of_side, tells_side) = if search.channel.is_mirrored() {
+            (mismatch, true)
+        } else {
+            side_mismatch(&counted, trace, end, shift).map_or((mismatch, false), |of_side| (of_side, true))
         };
         // Of an exact tie, the side as it is.
         if best.as_ref().is_none_or(|(found, _)| of_side < *found) {

@@ -1,6 +1,6 @@
 //! A constant between the measured and the simulated angle, as of a camera that stood tilted.
 
-use super::{CompareSettings, Comparison, FEWEST, mismatch_of};
+use super::{ChannelComparison, CompareSettings, Comparison, FEWEST, mismatch_of};
 use crate::measured::Channel;
 
 /// A constant by which the angles are apart.
@@ -39,7 +39,9 @@ pub(super) fn constant_of(
     let uncertain = |rows: usize| 5.0 * found.measured.noise / (rows as f64).sqrt();
     let constant = d.mean.powi(2) >= CONSTANT_FROM * d.rms.powi(2) && d.mean.abs() > uncertain(d.rows);
     // Of motions that hardly match a constant says nothing, and one that is within their rounding isn't seen.
-    if !constant || d.mean.abs() < 1e-3 * d.scale || mismatch(comparison) > UNLIKE {
+    let matches =
+        mismatch(comparison) <= UNLIKE && mismatch_in(comparison, found).is_none_or(|angles| angles <= UNLIKE);
+    if !constant || d.mean.abs() < 1e-3 * d.scale || !matches {
         return None;
     }
     let (settings, sign) = (comparison.settings, comparison.alignment.sign.factor());
@@ -73,18 +75,24 @@ pub(super) fn constant_of(
 /// of those that are compared, from the release to the horizon. A block that is held for long before its release matches there whatever it
 /// does later. Outliers, which are told by themselves, and the rows into which they are smoothed are left out.
 pub(super) fn mismatch(comparison: &Comparison) -> f64 {
-    let Comparison { alignment, outliers, settings, .. } = comparison;
-    let aligned = alignment.mismatch;
-    let Some(found) = comparison.channel(alignment.by) else { return aligned };
+    let aligned = comparison.alignment.mismatch;
+    let compared = comparison.channel(comparison.alignment.by).and_then(|found| mismatch_in(comparison, found));
+    compared.map_or(aligned, |compared| aligned.max(compared))
+}
+
+/// That of a quantity over the rows compared.
+fn mismatch_in(comparison: &Comparison, found: &ChannelComparison) -> Option<f64> {
+    let Comparison { outliers, settings, rows, .. } = comparison;
     let reach = settings.window / 2;
     let is_clear = |row: &usize| {
         let next = outliers.partition_point(|outlier| outlier + reach < *row);
         outliers.get(next).is_none_or(|outlier| *outlier > row + reach)
     };
-    let compared = comparison.rows.clone().filter(is_clear);
-    let pairs: Vec<(f64, f64)> = compared
+    let pairs: Vec<(f64, f64)> = rows
+        .clone()
+        .filter(is_clear)
         .map(|row| (found.measured.value[row], found.simulated.value[row]))
         .filter(|(x, y)| x.is_finite() && y.is_finite())
         .collect();
-    mismatch_of(&pairs, found.channel.has_own_origin()).map_or(aligned, |compared| aligned.max(compared))
+    mismatch_of(&pairs, found.channel.has_own_origin())
 }
