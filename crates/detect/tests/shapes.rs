@@ -182,31 +182,6 @@ fn a_disc_that_rolls_over_a_corner_is_on_three_pieces_one_after_another() {
     };
     let top = piece(0.5, 1.0);
     assert_eq!(piece(-0.9, 1.1), top, "a piece is a side, wherever on it the disc is, and however far from it");
-    let corner = piece(1.0 + 0.3, 0.5 + 0.4);
-    let flank = piece(1.5, 0.2);
-    assert!(top != corner && corner != flank && flank != top, "{top} {corner} {flank}");
-
-    let bricks = pair([rectangle(2.0, 1.0), rectangle(2.0, 1.0)]);
-    let on = found(&bricks, &[[0.7, 1.0, 0.0], [0.0, 0.0, 0.0]], 1e-6);
-    bricks.pieces(&at(0.7, 1.0), &[on[0].id], &mut pieces);
-    assert!(pieces.is_empty(), "a sharp corner leaves its side");
-}
-
-#[test]
-fn a_disc_that_rolls_over_a_corner_is_on_three_pieces_one_after_another() {
-    // The disc's centre is at (0.05, -0.1) of its body.
-    let on_block = pair([disc(0.5), rectangle(2.0, 1.0)]);
-    let at = |x: f64, y: f64| Poses(vec![[x - 0.05, y + 0.1, 0.0], [0.0, 0.0, 0.0]]);
-    let on = found(&on_block, &[[0.4, 1.1, 0.0], [0.0, 0.0, 0.0]], 1e-6);
-    let ids = [on[0].id];
-    let mut pieces = Vec::new();
-    let mut piece = |x: f64, y: f64| {
-        on_block.pieces(&at(x, y), &ids, &mut pieces);
-        assert_eq!(pieces.len(), 1);
-        pieces[0]
-    };
-    let top = piece(0.5, 1.0);
-    assert_eq!(piece(-0.9, 1.1), top, "a piece is a side, wherever on it the disc is, and however far from it");
     let (corner, flank) = (piece(1.0 + 0.3, 0.5 + 0.4), piece(1.5, 0.2));
     assert!(top != corner && corner != flank && flank != top, "{top} {corner} {flank}");
 
