@@ -7,12 +7,13 @@ use crate::diagnostic::Diagnostics;
 use crate::document::Document;
 use crate::driven::SharedBeam;
 use crate::held::Held;
-use crate::scene::{AngleUnit, BeamScene, LengthUnit, MotionScene, RecordScene};
+use crate::scene::{AngleUnit, BeamScene, LengthUnit, MotionScene, RecordScene, Reduction};
 use crate::simulation::BuildError;
 use crate::solver_pool::SolverPool;
 use crate::static_start::Settled;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use teeter_beam::BeamSpec;
 use teeter_contact::ContactSolver;
 use teeter_integrator::Table;
 use teeter_record::Record;
@@ -34,8 +35,7 @@ pub struct SharedParts {
     corrected: Mutex<Held<RecordKeys, Record>>,
     used: Mutex<Held<(RecordKeys, Placed), RecordScene>>,
     tables: Mutex<Held<TableKeys, Table>>,
-    /// By the texts of their specification and reduction.
-    beams: Mutex<Held<String, SharedBeam>>,
+    beams: Mutex<Held<(BeamSpec, Option<Reduction>), SharedBeam>>,
     settled: Mutex<Held<String, Settled>>,
     /// Of beams, for warnings.
     pub(super) measures: BeamMeasures,
@@ -172,7 +172,7 @@ impl SharedParts {
     /// A beam, from earlier or made now.
     pub(crate) fn beam(&self, of: &BeamScene) -> Result<Arc<SharedBeam>, BuildError> {
         let count = |_: &SharedBeam| _ = self.counts.beams.fetch_add(1, Ordering::Relaxed);
-        let key = format!("{:?}{:?}", of.spec, of.reduction);
+        let key = (of.spec.clone(), of.reduction);
         let made = |shared: &SharedBeam| shared.size();
         Held::try_find_or(&self.beams, key, MOST_BEAMS, || SharedBeam::new(of).inspect(count), made)
     }
