@@ -34,6 +34,9 @@ const CONSTANT: f64 = 1e-9;
 /// Above and below a constant value there is room for this part of it.
 const ROOM_OF_CONSTANT: f64 = 0.1;
 
+/// About as many round numbers are on an axis that goes out to them.
+const ROUND_NUMBERS: usize = 6;
+
 /// Least relative width of a given range; the round numbers in it can still be distinguished.
 const NARROWEST: f64 = 1e-12;
 
@@ -119,6 +122,24 @@ impl Axis {
     pub fn shown_in(mut self, factor: f64) -> Self {
         if self.scale == Scale::Linear && factor.is_finite() && factor > 0.0 {
             self.shown = factor;
+        }
+        self
+    }
+
+    /// Moves each end of a linear axis out to the next round number, where that is no farther away than this part of the range: 0 and the
+    /// end of a record then have their ticks.
+    #[must_use]
+    pub fn out_to_round(mut self, part: f64) -> Self {
+        let ticks = Ticks::linear(self.shown * self.low, self.shown * self.high, ROUND_NUMBERS).major;
+        let (Scale::Linear, [first, second, ..]) = (self.scale, ticks.as_slice()) else { return self };
+        let step = (second.0 - first.0) / self.shown;
+        let (low, high) = ((self.low / step).floor() * step, (self.high / step).ceil() * step);
+        let most = part * (self.high - self.low);
+        if self.low - low <= most {
+            self.low = low;
+        }
+        if high - self.high <= most {
+            self.high = high;
         }
         self
     }
@@ -244,6 +265,18 @@ mod tests {
                 assert!((1..=12).contains(&axis.ticks(6).major.len()), "{values:?}: {:?}", axis.ticks(6));
             }
         }
+    }
+
+    #[test]
+    fn ends_near_round_numbers_go_out_to_them() {
+        let of = |low, high| Axis::between("t", low, high).out_to_round(0.05).ends();
+        assert_eq!(of(0.0028, 0.4988), (0.0, 0.5));
+        assert_eq!(of(0.0, 0.5), (0.0, 0.5));
+        assert_eq!(of(-0.06, 0.46), (-0.06, 0.46), "no farther than a twentieth");
+        assert_eq!(
+            Axis::logarithmic_between("T", 0.02, 9.0).out_to_round(0.05).ends(),
+            Axis::logarithmic_between("T", 0.02, 9.0).ends()
+        );
     }
 
     #[test]

@@ -224,16 +224,41 @@ impl Legend {
 /// Room at the left of a note as long as the figure is wide.
 const NOTE_LEFT: f64 = 4.0;
 
-/// A note in as few lines as are as wide as the figure, broken between words; a word longer than that has a line of its own.
+/// A note in as few lines as are as wide as the figure, about equally long, broken between words but not before a unit; a word longer than that has a
+/// line of its own.
 fn note_lines(note: Option<&str>, across: f64) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
+    let mut words: Vec<String> = Vec::new();
     for word in note.into_iter().flat_map(|note| note.split(' ')) {
+        match words.last_mut() {
+            Some(number) if number.ends_with(|c: char| c.is_ascii_digit()) => *number = format!("{number} {word}"),
+            _ => words.push(word.to_owned()),
+        }
+    }
+    let widest = across - RIGHT - NOTE_LEFT;
+    let lines = filled(&words, widest);
+    if lines.len() < 2 {
+        return lines;
+    }
+    // As narrow as they may be without a line more: greedy lines leave one word for the last.
+    let narrower = (1..).map(|k| filled(&words, widest - NARROWER * f64::from(k)));
+    let narrowest = narrower.take_while(|fewer| fewer.len() == lines.len()).take(MOST_NARROWER).last();
+    narrowest.unwrap_or(lines)
+}
+
+/// By how much lines are made narrower at a time, and how often at most.
+const NARROWER: f64 = 6.0;
+const MOST_NARROWER: usize = 100;
+
+/// Words in lines of this width.
+fn filled(words: &[String], widest: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in words {
         match lines.last_mut() {
-            Some(line) if text_width(line) + text_width(word) + 6.0 <= across - RIGHT - NOTE_LEFT => {
+            Some(line) if text_width(line) + text_width(word) + 6.0 <= widest => {
                 line.push(' ');
                 line.push_str(word);
             }
-            _ => lines.push(word.to_owned()),
+            _ => lines.push(word.clone()),
         }
     }
     lines
@@ -371,6 +396,18 @@ mod tests {
         assert_eq!(Legend::Rows.more_height(&entries, Some(note), narrow), 2.0 * ROW);
         assert_eq!(Legend::Row.more_height(&[], Some(note), narrow), ROW);
         assert_eq!(Legend::Row.more_height(&entries, Some("short"), narrow), 0.0);
+    }
+
+    #[test]
+    fn a_note_leaves_no_unit_alone_in_its_last_line() {
+        let note = "plate on table; pale: means over 800 µs; strong: over 10 ms";
+        for width in [60.0, 70.0, 84.0, 90.0] {
+            let lines = note_lines(Some(note), 4.0 * width);
+            assert_eq!(lines.join(" "), note);
+            let widths: Vec<f64> = lines.iter().map(|line| text_width(line)).collect();
+            let longest = widths.iter().copied().fold(0.0, f64::max);
+            assert!(widths.len() == 1 || widths[widths.len() - 1] > 0.4 * longest, "{width}: {lines:?}");
+        }
     }
 
     #[test]

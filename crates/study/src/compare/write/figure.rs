@@ -12,6 +12,8 @@ const MOST_MARKS: usize = 150;
 const LINE_POINTS: usize = 4000;
 /// The number of a dashed blue line: the motion before a fit is told from the fitted one without colours, too.
 const DASHED: usize = 7;
+/// A round number no farther from the first or last row than this part of the time is the end of its axis.
+const ROUND: f64 = 0.05;
 /// Heights of the panels of the motion and of the difference, mm.
 const HEIGHTS: [f64; 2] = [52.0, 22.0];
 
@@ -67,7 +69,7 @@ fn figure(comparison: &Comparison, before: Option<&Comparison>, channel: Channel
     };
     let measured = points(&found.measured.value);
     let span = (t.first().copied().unwrap_or(0.0), t.last().copied().unwrap_or(1.0));
-    let x = Axis::between("Time t (s)", span.0, span.1);
+    let x = Axis::between("Time t (s)", span.0, span.1).out_to_round(ROUND);
     let simulated = line(comparison, channel, factor, span);
     let earlier = before.map(|before| line(before, channel, factor, span)).unwrap_or_default();
     let apart = |found: &ChannelComparison| {
