@@ -35,6 +35,9 @@ pub(crate) const FALLEN: f64 = 0.9;
 /// A block that began in flight tumbled if it has turned by this angle, rad.
 const TUMBLED: f64 = 0.75 * std::f64::consts::PI;
 
+/// A block that hasn't rocked for this many √(R/g) only slides, if it does: a swing as small as [`ROCKED`] takes less.
+const FLAT: f64 = 2.0;
+
 /// A block slid, in a word, if it did by this part of its base.
 const SLID: f64 = 0.01;
 
@@ -162,6 +165,8 @@ struct Seen {
     angle: f64,
     /// The largest |φ|/α.
     part: Option<f64>,
+    /// When that was last large enough to be called rocking, s.
+    rocked: Option<f64>,
     /// Since when it is past a point of no return, s, and to which side.
     beyond: Option<(f64, Way)>,
     /// Whether it has fallen to the next side since.
@@ -421,6 +426,9 @@ impl Fates {
             if let Some(mut stance) = stance.filter(|_| carried) {
                 let slope = watched.slope(&state.q);
                 if let Some(part) = stance.part(q[2], slope) {
+                    if part >= ROCKED {
+                        seen.rocked = Some(t);
+                    }
                     seen.part = Some(seen.part.map_or(part, |most| most.max(part)));
                 }
                 let way = Way::of(q[2] - stance.flat);
@@ -450,6 +458,7 @@ impl Fates {
                 let drop = height - watched.height(layout, number, state);
                 seen.dropped = if drop > watched.thickness { seen.dropped.or(Some(t)) } else { None };
             }
+            seen.touched.rise(watched.carrier.clearance([q[0], q[1]], layout, &state.q));
             let speed = watched.speed(layout, number, state);
             seen.still = if speed <= watched.still_speed { seen.still.or(Some(t)) } else { None };
             if let Some(past) = watched.carrier.past_end([q[0], q[1]], layout, &state.q) {
@@ -540,6 +549,8 @@ impl Seen {
         let base = watched.feet.map_or(f64::INFINITY, |[left, right]| right[0] - left[0]);
         let has_slid = slid.is_some_and(|slid| slid.abs() >= SLID * base);
         let rocked = self.part.is_some_and(|part| part >= ROCKED);
+        // What came down and slid off since doesn't rock any more.
+        let only_slides = has_slid && self.rocked.is_some_and(|last| state.t - last >= FLAT * watched.still_time);
         let peak = rocking.and_then(|monitor| {
             let of_crossings = || monitor.peaks().last().copied();
             let largest = || Some(monitor.extreme()).filter(|peak| peak.phi != 0.0);
@@ -552,7 +563,7 @@ impl Seen {
             _ if fell.is_some() => (Fate::Fell, fell, None),
             (None, None, None, Some(t)) if has_slid => (Fate::Slid, Some(t), None),
             (None, None, None, Some(t)) => (Fate::Rests, Some(t), None),
-            _ if rocked => (Fate::Rocks, peak.map(|peak| peak.t), None),
+            _ if rocked && !only_slides => (Fate::Rocks, peak.map(|peak| peak.t), None),
             _ if has_slid => (Fate::Slid, None, None),
             _ => (Fate::Moves, None, None),
         };

@@ -222,6 +222,15 @@ impl Carrier {
         }
     }
 
+    /// How high a point is over what carries the block, by what height is over where that bends, m.
+    pub(super) fn clearance(&self, at: [f64; 2], layout: &Layout, q: &[f64]) -> f64 {
+        let height = self.height(at, layout, q);
+        let On::Beam(beam, position) = &self.root else { return height };
+        let place = &layout.beams[*beam];
+        let shape = place.beam.shape_clamped(at[0] - beam_origin(*beam, *position, layout, q)[0]);
+        height - place.deflection(&shape, &q[place.range.clone()]).w
+    }
+
     /// Whether a block with its mass centre at a point is below everything that could hold it.
     pub(super) fn is_below(&self, at: [f64; 2], reach: f64, layout: &Layout, q: &[f64]) -> bool {
         match self.floor {

@@ -55,7 +55,17 @@ pub(super) struct Touched {
     landed: Option<f64>,
     /// How long that flight took, from the start of the run if it had not touched anything before, s.
     flown: f64,
+    /// How high its mass centre was over what carries it at the end of the last step, where it last touched something, and at the highest since, m.
+    now: f64,
+    left: f64,
+    highest: f64,
+    /// How far that flight rose above where it left, m.
+    rose: f64,
 }
+
+/// What doesn't rise by this part of R over what carries it doesn't bounce, however long it touches nothing: it rides on a beam that moves up and
+/// down, micrometres above it. In free flight that takes as long as [`FLIGHT`].
+const RISES: f64 = 1e-3;
 
 /// What touches nothing for less than this part of √(R/g) doesn't fly, but chatters: a bounce as long rises by little more than a thousandth of R.
 const FLIGHT: f64 = 0.1;
@@ -80,8 +90,9 @@ impl Fates {
             if flew && touched.last != Some(t) {
                 touched.landed = Some(t);
                 touched.flown = step.t_start - touched.last.unwrap_or(0.0);
+                touched.rose = if touched.last.is_some() { touched.highest - touched.left } else { f64::INFINITY };
             }
-            touched.last = Some(t);
+            (touched.last, touched.left, touched.highest) = (Some(t), touched.now, touched.now);
         }
         for Seen { touched, .. } in &mut self.blocks {
             touched.was_free |= touched.last != Some(t);
@@ -89,12 +100,23 @@ impl Fates {
     }
 }
 
+impl Touched {
+    /// Takes in how high over what carries it a block is at the end of a step, m.
+    pub(super) fn rise(&mut self, height: f64) {
+        self.now = height;
+        self.highest = self.highest.max(height);
+    }
+}
+
 impl Seen {
     /// How it moves; `None` of one that does so in no way that has a word, such as a block that just began to slide.
     pub(super) fn going(&self, watched: &Watched, layout: &Layout, number: usize, state: &State) -> Option<Going> {
         let [vx, vy, spin] = watched.velocity(layout, number, state);
-        let (t, Touched { last, landed, flown, .. }) = (state.t, self.touched);
-        if last.is_none_or(|last| t - last >= FLIGHT * watched.still_time) {
+        let (t, Touched { last, flown, .. }) = (state.t, self.touched);
+        let least = RISES * watched.reach;
+        let landed = self.touched.landed.filter(|_| self.touched.rose >= least);
+        let rides = last.is_some() && watched.gravity > 0.0 && self.touched.highest - self.touched.left < least;
+        if !rides && last.is_none_or(|last| t - last >= FLIGHT * watched.still_time) {
             // In free flight it is where it last touched something again when its speed has turned round.
             let is_above = |last: f64| vy > -0.5 * watched.gravity * (t - last);
             return Some(match last {
