@@ -8,10 +8,10 @@
   /** The plots over time that the page has in common with the figures: units, scales and what is left out are decided there. */
   function addPanels(late) {
     for (const panel of data.panels.filter((one) => one.late === late)) {
-      const series = panel.series.map(({ label, index, y, at_borders: atBorders, other_at: otherAt = [], others = [] }) => {
+      const series = panel.series.map(({ label, index, y, raw, at_borders: atBorders, other_at: otherAt = [], others = [] }) => {
         let picture = 0;
         const known = new Map(otherAt.map((after, k) => [picture += after, others[k]]));
-        return { label, index, y, t: atBorders ? forces.borders : curves.t, known };
+        return { label, index, y, raw, t: atBorders ? forces.borders : curves.t, known };
       });
       plots.add({
         id: panel.id, contact: panel.contact, title: panel.title, unit: panel.unit, series, guides: panel.guides, least: panel.least,
@@ -55,14 +55,19 @@
   const overTheRaw = (lines, means) =>
     [...lines.filter(({ raw }) => raw), ...[...lines.filter(({ raw }) => !raw), ...means].sort((a, b) => a.index - b.index)];
 
-  /** Where peaks would dwarf all else: the size to cut them at. */
+  /** Where peaks would dwarf all else, or what rings its mean: the size to cut them at. */
   function cutOf(series, least) {
+    const most = (lines) => lines.reduce((size, { y }) => y.reduce((a, b) => Math.max(a, Math.abs(b ?? 0) || 0), size), 0);
+    const [all, means] = [most(series), most(series.filter(({ raw }) => !raw))];
+    if (series.some(({ raw }) => raw) && means > 0 && all > 3 * means) return { limit: 1.5 * means, largest: all };
     const sizes = series.flatMap(({ y }) => y.map(Math.abs).filter((f) => f > least)).sort((a, b) => a - b);
     const [usual, largest] = [sizes[Math.floor(0.9 * sizes.length)], sizes[sizes.length - 1]];
     return largest > 6 * usual ? { limit: 3 * usual, largest } : undefined;
   }
 
   const strongest = Math.max(1e-300, ...forces.points.map(({ normal }) => normal.reduce((most, f) => Math.max(most, f), 0)));
+  /** The tangential force of several points together. */
+  const sumOf = (points) => points.reduce((total, { tangential }) => tangential.map((f, i) => (f === null ? null : f + (total[i] ?? 0))), []);
   const scaled = (values, factor) => values.map((f) => (f === null ? null : f * factor));
   const active = scenery.contacts.map((_, k) => k).filter((k) => forces.points.some((point) => point.contact === k));
   const nameOf = ({ block, surface }) => `${scenery.blocks[block].name} on ${surface}`;
@@ -95,7 +100,8 @@
     for (const [i, [key, title]] of [["normal", "Normal force"], ["tangential", "Tangential force"]].entries()) {
       if (key === "tangential" ? forces.frictionless.includes(k) : forces.forceless?.includes(k)) continue;
       const [prefix, factor] = forces.units[k][i];
-      const lines = series(key, factor);
+      const sums = key === "tangential" && forces.shares?.includes(k);
+      const lines = sums ? [{ label: "", index: 0, t: forces.borders, y: scaled(sumOf(points), factor), stepped: true }] : series(key, factor);
       const means = key === "normal" ? points.filter(({ mean }) => mean).map((point) =>
         ({ label: contact.points[point.point].label, index: points.indexOf(point), t: forces.borders, y: scaled(point.mean, factor) })) : [];
       for (const line of lines) line.raw = means.some(({ index }) => index === line.index);
@@ -105,8 +111,8 @@
       });
       const over = `means over ${forces.bucket}${strikes.length ? " without the impacts" : ""}`;
       htmlElement("p", "note", means.length ? `Pale: ${over}. Strong: over ${forces.window}.` : `M${over.slice(1)}.`, byId(`panel-${key}-${k}`));
-      if (key === "tangential" && forces.shares?.includes(k)) {
-        htmlElement("p", "note", "Of points that stick, equilibrium decides only the sum of the tangential forces: how they share it is one of many ways.", byId(`panel-${key}-${k}`));
+      if (sums) {
+        htmlElement("p", "note", "The sum over the points: how those that stick share it, equilibrium leaves open. Their shares are in contacts.csv.", byId(`panel-${key}-${k}`));
       }
       if (forces.redundant?.includes(k)) {
         htmlElement("p", "note", "Equilibrium alone doesn't decide these forces: of rigid bodies that are held more than they need be, they are one of many sets that keep them in balance.", byId(`panel-${key}-${k}`));

@@ -1,13 +1,18 @@
 //! The records that prescribe motions: their figures, and their section of the page.
 
+use super::content::largest;
+use super::curves::Curves;
+use super::panels::{Unit, length_unit};
+use super::recorder::PageRecorder;
 use super::rounded;
 use super::widths::{SIDE_BY_SIDE, for_any_width};
+use crate::driven::Driven;
 use crate::summary::RecordSummary;
 use std::fmt::Write;
 use std::sync::Arc;
 use teeter_plot::{Axis, Figure, Legend, Panel, Series, escaped};
 use teeter_record::Record;
-use teeter_scenario::scene::RecordScene;
+use teeter_scenario::scene::{LengthUnit, RecordScene};
 
 /// Damping ratio of the response spectra.
 const DAMPING_RATIO: f64 = 0.05;
@@ -18,10 +23,17 @@ const PERIODS: ([f64; 2], usize) = ([0.02, 10.0], 150);
 /// Most pieces of time of which a drawn curve has the least and the largest value.
 const PIECES: usize = 1200;
 
-/// Acceleration, velocity and displacement over time; `None` without records.
-pub(super) fn histories(records: &[Arc<RecordScene>]) -> Option<Figure> {
+/// Units of lengths and velocities in the figures and the table of a record's own page.
+const ALONE: [LengthUnit; 2] = [LengthUnit::Millimetre, LengthUnit::Metre];
+
+/// Acceleration, velocity and displacement over time, with lengths in the scene's unit; `None` without records.
+pub(super) fn histories(records: &[Arc<RecordScene>], [length, velocity]: [LengthUnit; 2]) -> Option<Figure> {
     let end = records.iter().map(|of| of.record.duration()).reduce(f64::max)?;
     let motions: Vec<_> = records.iter().map(|of| of.record.motion()).collect();
+    let (fastest, farthest) = motions
+        .iter()
+        .fold((0.0_f64, 0.0_f64), |(v, d), (speeds, ways)| (v.max(largest(speeds)), d.max(largest(ways))));
+    let ((v, per_v), (d, per_d)) = (readable(velocity, fastest), readable(length, farthest));
     let panel = |label: &str, factor: f64, values: &dyn Fn(usize) -> Vec<f64>| {
         let line = |(k, of): (usize, &Arc<RecordScene>)| {
             let values = values(k).into_iter().map(|y| factor * y).collect::<Vec<_>>();
@@ -35,8 +47,8 @@ pub(super) fn histories(records: &[Arc<RecordScene>]) -> Option<Figure> {
     let x = Axis::between("Time since the start of the record t (s)", 0.0, end);
     let figure = Figure::new("records", "Recorded acceleration, with the velocity and displacement from rest", x)
         .panel(panel("Acceleration a (m/s²)", 1.0, &|k| records[k].record.accelerations().to_vec()))
-        .panel(panel("Velocity v (m/s)", 1.0, &|k| motions[k].0.clone()))
-        .panel(panel("Displacement d (mm)", 1e3, &|k| motions[k].1.clone()));
+        .panel(panel(&format!("Velocity v ({v}/s)"), per_v, &|k| motions[k].0.clone()))
+        .panel(panel(&format!("Displacement d ({d})"), per_d, &|k| motions[k].1.clone()));
     Some(figure)
 }
 
@@ -52,7 +64,7 @@ pub fn spectrum_periods() -> Vec<f64> {
 #[must_use]
 pub fn record_figures(record: &Arc<RecordScene>, width_mm: f64) -> Vec<(String, String)> {
     let records = std::slice::from_ref(record);
-    let figures = [("records.svg", histories(records)), ("spectra.svg", spectra(records))];
+    let figures = [("records.svg", histories(records, ALONE)), ("spectra.svg", spectra(records, ALONE[0]))];
     figures
         .into_iter()
         .filter_map(|(name, figure)| Some((name.to_owned(), figure?.width_mm(width_mm).to_svg())))
@@ -68,7 +80,7 @@ pub fn record_page(record: &Arc<RecordScene>, file: &str, corrections: &str) -> 
         Some(named) => (named.as_str(), format!("{file} · {corrections}")),
         None => (file, corrections.to_owned()),
     };
-    let section = section(std::slice::from_ref(record), &[RecordSummary::new(record)], false);
+    let section = section(std::slice::from_ref(record), &[RecordSummary::new(record)], None);
     super::document(title, &subtitle, RECORD_STYLE, &section)
 }
 
@@ -109,8 +121,8 @@ fn remarks(record: &Record) -> Vec<String> {
 const RECORD_STYLE: &str = "#records { margin-top: 1.25rem; }\n\
 .pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); gap: 1rem; align-items: start; }\n";
 
-/// Response spectra over the natural period; `None` without records.
-pub(super) fn spectra(records: &[Arc<RecordScene>]) -> Option<Figure> {
+/// Response spectra over the natural period, with lengths in the scene's unit; `None` without records.
+pub(super) fn spectra(records: &[Arc<RecordScene>], length: LengthUnit) -> Option<Figure> {
     let [low, high] = PERIODS.0;
     let periods = spectrum_periods();
     // A spectrum at periods of a thousandth of the record's step is refused: the ground's own.
@@ -118,6 +130,8 @@ pub(super) fn spectra(records: &[Arc<RecordScene>]) -> Option<Figure> {
     if responses.is_empty() || responses.len() < records.len() {
         return None;
     }
+    let farthest = responses.iter().flatten().fold(0.0, |most: f64, response| most.max(response.displacement));
+    let (unit, per_metre) = readable(length, farthest);
     let panel = |label: &str, of: &dyn Fn(&teeter_record::Response) -> f64| {
         let line = |k: usize| {
             let points = responses[k].iter().map(|response| (response.period, of(response)));
@@ -133,8 +147,14 @@ pub(super) fn spectra(records: &[Arc<RecordScene>]) -> Option<Figure> {
     let title = "Response spectra of the records, damping ratio 5 %: pseudo-acceleration and relative displacement";
     let figure = Figure::new("spectra", title, x)
         .panel(panel("Pseudo-acceleration S_a (m/s²)", &teeter_record::Response::pseudo_acceleration))
-        .panel(panel("Displacement S_d (mm)", &|response| 1e3 * response.displacement));
+        .panel(panel(&format!("Displacement S_d ({unit})"), &|response| per_metre * response.displacement));
     Some(figure)
+}
+
+/// The scene's unit of length with its number to a metre, or one that makes readable numbers where that would begin with zeros.
+fn readable(unit: LengthUnit, size: f64) -> Unit {
+    let own = (unit.word(), unit.per_metre());
+    if size * own.1 >= 0.01 { own } else { length_unit(unit, size) }
 }
 
 /// The name of a record in a legend; empty for a single one.
@@ -191,26 +211,63 @@ impl Measure {
     }
 }
 
+/// The unit of Arias intensities, by which they are known.
+const ARIAS: &str = "m/s";
+
+/// The unit of velocities, whose length is chosen as that of lengths is.
+const VELOCITY: &str = "/s";
+
 /// What the table says of a record.
 const MEASURES: [Measure; 11] = [
     Measure::of("Duration", "s", |of, _| of.duration),
     Measure::of("Peak acceleration (PGA)", "m/s²", |of, _| of.peak_acceleration),
     Measure::alone("Time of the peak acceleration", "s", |_, record| record.acceleration_peak().time),
-    Measure::of("Peak velocity (PGV)", "m/s", |of, _| of.peak_velocity),
+    Measure::of("Peak velocity (PGV)", VELOCITY, |of, _| of.peak_velocity),
     Measure::alone("Time of the peak velocity", "s", |_, record| record.velocity_peak().time),
     Measure::of("Peak displacement (PGD)", "m", |of, _| of.peak_displacement),
     Measure::alone("Time of the peak displacement", "s", |_, record| record.displacement_peak().time),
-    Measure::of("Arias intensity", "m/s", |of, _| of.arias_intensity),
+    Measure::of("Arias intensity", ARIAS, |of, _| of.arias_intensity),
     Measure::of("Significant duration, 5–95 %", "s", |of, _| of.significant_duration),
-    Measure::alone("Velocity at the end", "m/s", |_, record| record.at_the_end()[0]),
+    Measure::alone("Velocity at the end", VELOCITY, |_, record| record.at_the_end()[0]),
     Measure::alone("Displacement at the end", "m", |_, record| record.at_the_end()[1]),
 ];
 
-/// The section of the page with a table of measures and both figures; empty without records. `named`: each with the motion that it
-/// drives and its file, which a page of one record has in its title.
-pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary], named: bool) -> String {
+/// What the page of a run has around its records.
+pub(super) struct OfRun {
+    /// The scene's unit of length.
+    pub(super) length: LengthUnit,
+    /// Whether its plots of what moves the ground and supports already show the records over time.
+    pub(super) drawn: bool,
+}
+
+/// Records differ from what they drive by less than this part of their peaks, or it isn't all of them.
+const SAME: f64 = 0.02;
+
+/// Whether the plots of prescribed motions, over the run, show all records: their whole lengths and peaks.
+pub(super) fn are_drawn(recorder: &PageRecorder, curves: &Curves) -> bool {
+    let end = curves.borders().last().copied().unwrap_or(0.0);
+    let is_drawn = |of: &Arc<RecordScene>| {
+        let (speeds, ways) = of.record.motion();
+        let peaks = [largest(&ways), largest(&speeds), largest(of.record.accelerations())];
+        let shows = |(which, driven): (usize, &Driven)| {
+            let first = recorder.scenery.driven_column(which);
+            let axis = ["x", "y", "rotation"][driven.component];
+            let is_named = in_words(&of.path) == format!("{} {axis}", driven.name.trim_end_matches(".support"));
+            let near = |(k, peak): (usize, &f64)| (largest(&curves.curve(first + k)) - peak).abs() <= SAME * peak;
+            is_named && peaks.iter().enumerate().all(near)
+        };
+        end >= of.record.duration() && recorder.scenery.driven.iter().enumerate().any(shows)
+    };
+    recorder.scenery.records.iter().all(is_drawn)
+}
+
+/// The section of the page with a table of measures and the figures; empty without records. The page of a run names each with the motion that
+/// it drives and its file, which a page of one record has in its title.
+pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary], of_run: Option<OfRun>) -> String {
+    let named = of_run.is_some();
+    let units = of_run.as_ref().map_or(ALONE, |of_run| [of_run.length; 2]);
     let mut html = String::new();
-    let Some(histories) = histories(records) else { return html };
+    let Some(histories) = histories(records, units) else { return html };
     // The only section of a page, or one beside the plots.
     let level = if named { "h3" } else { "h2" };
     let _ = write!(
@@ -229,9 +286,15 @@ pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary],
     }
     html.push_str("<tbody>\n");
     for Measure { name, unit, value, .. } in MEASURES.iter().filter(|measure| measure.in_report || !named) {
-        let _ = write!(html, "<tr><th scope=\"row\">{name} <span class=\"unit\">({unit})</span></th>");
-        for (of, record) in summaries.iter().zip(records) {
-            let shown = rounded(value(of, &record.record), 4).to_string().replace('-', "\u{2212}");
+        let values: Vec<f64> = summaries.iter().zip(records).map(|(of, record)| value(of, &record.record)).collect();
+        let ((unit, factor), per) = match *unit {
+            "m" => (readable(units[0], largest(&values)), ""),
+            VELOCITY => (readable(units[1], largest(&values)), VELOCITY),
+            unit => ((unit, 1.0), ""),
+        };
+        let _ = write!(html, "<tr><th scope=\"row\">{name} <span class=\"unit\">({unit}{per})</span></th>");
+        for value in values {
+            let shown = rounded(factor * value, 4).to_string().replace('-', "\u{2212}");
             let _ = write!(html, "<td>{shown}</td>");
         }
         html.push_str("</tr>\n");
@@ -244,7 +307,8 @@ pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary],
         let _ = writeln!(html, "<p class=\"note\">{}</p>", escaped(&remark));
     }
     html.push_str("<div class=\"pictures\">\n");
-    for figure in [Some(histories), spectra(records)].into_iter().flatten() {
+    let histories = Some(histories).filter(|_| !of_run.as_ref().is_some_and(|of_run| of_run.drawn));
+    for figure in [histories, spectra(records, units[0])].into_iter().flatten() {
         let _ = writeln!(html, "<div>{}</div>", for_any_width(&figure.legend(Legend::Rows), SIDE_BY_SIDE));
     }
     html.push_str("</div></section>\n");
@@ -272,6 +336,13 @@ mod tests {
         let still = Record::new("", 0.01, wave.collect()).unwrap();
         let [_, last] = still.at_the_end();
         assert!(last.abs() < 0.1 * still.displacement_peak().size && remarks(&still).is_empty(), "{last}");
+    }
+
+    #[test]
+    fn lengths_are_in_the_unit_of_the_scene_unless_that_makes_zeros_alone() {
+        assert_eq!(readable(LengthUnit::Metre, 0.3686), ("m", 1.0));
+        assert_eq!(readable(LengthUnit::Metre, 1.67e-6), ("µm", 1e6));
+        assert_eq!(readable(LengthUnit::Millimetre, 0.1954), ("mm", 1e3));
     }
 
     #[test]

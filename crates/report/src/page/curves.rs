@@ -4,39 +4,11 @@
 //! A bucket is drawn as two points, lowest and highest in the order in which they came, at its first and last step: up to
 //! two steps a bucket that is the curve itself, beyond that its envelope, from which no peak is missing.
 
+mod extremes;
+
+use extremes::Extremes;
 use serde::{Deserialize, Serialize};
 use teeter_integrator::ContactState;
-
-/// The lowest and the highest value, each with its time, and the last one.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-struct Extremes {
-    low: (f64, f64),
-    high: (f64, f64),
-    end: f64,
-}
-
-impl Extremes {
-    fn of(t: f64, x: f64) -> Self {
-        Self { low: (t, x), high: (t, x), end: x }
-    }
-
-    /// Takes later extremes in.
-    #[inline]
-    fn take(&mut self, later: Self) {
-        // A NaN loses no comparison, so a curve that stops being finite shows its gap only where nothing else is.
-        if later.low.1 < self.low.1 {
-            self.low = later.low;
-        }
-        if later.high.1 > self.high.1 {
-            self.high = later.high;
-        }
-        self.end = later.end;
-    }
-
-    fn in_order(self) -> [f64; 2] {
-        if self.low.0 <= self.high.0 { [self.low.1, self.high.1] } else { [self.high.1, self.low.1] }
-    }
-}
 
 /// What an impulse is of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -179,10 +151,11 @@ impl Curves {
     pub(crate) fn enter(&mut self, t: f64, values: &[f64]) {
         match self.buckets.last_mut().filter(|bucket| bucket.steps < self.stride) {
             Some(bucket) => {
+                let lasting = t - bucket.last;
                 (bucket.last, bucket.steps) = (t, bucket.steps + 1);
                 let at = self.extremes.len() - values.len();
                 for (extremes, &x) in self.extremes[at..].iter_mut().zip(values) {
-                    extremes.take(Extremes::of(t, x));
+                    extremes.take(Extremes::of_step((t, x), extremes.end, lasting));
                 }
             }
             None => self.begin_bucket(t, values),
@@ -197,7 +170,11 @@ impl Curves {
         }
         let begin = self.buckets.last().map_or(self.start.0, |bucket| bucket.last);
         self.buckets.push(Bucket { begin, first: t, last: t, steps: 1 });
-        self.extremes.extend(values.iter().map(|&x| Extremes::of(t, x)));
+        let at = self.extremes.len().checked_sub(values.len());
+        for (column, &x) in values.iter().enumerate() {
+            let before = at.map_or(self.start.1[column], |at| self.extremes[at + column].end);
+            self.extremes.push(Extremes::of_step((t, x), before, t - begin));
+        }
         let before = self.works.len().saturating_sub(self.contacts);
         for k in 0..self.contacts {
             let slip = self.works.get(before + k).map_or(0.0, |work| work.slip);
@@ -268,6 +245,12 @@ impl Curves {
         let columns = self.start.1.len();
         let points = self.extremes.iter().skip(column).step_by(columns.max(1)).flat_map(|e| e.in_order());
         std::iter::once(self.start.1[column]).chain(points).collect()
+    }
+
+    /// The means of a quantity over the buckets, exact to the trapezoid rule however many steps these have.
+    pub(crate) fn means(&self, column: usize) -> Vec<f64> {
+        let own = self.extremes.iter().skip(column).step_by(self.start.1.len().max(1));
+        own.zip(&self.buckets).map(|(own, bucket)| own.integral / (bucket.last - bucket.begin)).collect()
     }
 
     /// Whether a curve shows extremes in place of values: where a bucket has more steps than two points can show.
@@ -399,6 +382,16 @@ mod tests {
         let short = run(4, 7, ringing);
         let all = (0..=7).map(f64::from);
         assert_eq!(short.values(0, all.clone(), 0.0), all.map(|t| Some(ringing(t))).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn means_are_those_of_all_steps_however_few_buckets_are_left() {
+        // A peak in every tenth step: the middle between the extremes would be 5.
+        let curves = run(10, 10_000, |t| if t as u64 % 10 == 5 { 10.0 } else { 0.0 });
+        assert!(curves.is_thinned());
+        assert!(curves.means(0).iter().all(|mean| (mean - 1.0).abs() < 0.02), "{:?}", curves.means(0));
+        let line = run(4, 7, |t| 3.0 * t);
+        assert_eq!(line.means(0), [3.0, 9.0, 15.0, 19.5]);
     }
 
     #[test]

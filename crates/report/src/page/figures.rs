@@ -38,7 +38,7 @@ pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
     for panel in panels.panels.iter().filter(|panel| panel.place == Place::Motion) {
         add(&panel.id, plots.over_time(&panel.id, &panel.description, vec![plots.time_panel(panel)]));
     }
-    if let Some(figure) = span::shapes(recorder, "shapes") {
+    if let Some(figure) = span::shapes(recorder, &panels.units, "shapes") {
         add("shapes", figure);
     }
     for (name, figure) in plots.contact_forces() {
@@ -50,7 +50,7 @@ pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
     for portrait in &panels.portraits {
         add(portrait.id, plots.portrait(portrait));
     }
-    if let Some(figure) = span::envelopes(recorder, "envelopes") {
+    if let Some(figure) = span::envelopes(recorder, &panels.units, "envelopes") {
         add("envelopes", figure);
     }
     for (file, ids, title) in [
@@ -64,10 +64,10 @@ pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
             add(file, plots.over_time(file, title, own));
         }
     }
-    if let Some(figure) = accelerograms::histories(&scenery.records) {
+    if let Some(figure) = accelerograms::histories(&scenery.records, [scenery.display.length; 2]) {
         add("records", figure);
     }
-    if let Some(figure) = accelerograms::spectra(&scenery.records) {
+    if let Some(figure) = accelerograms::spectra(&scenery.records, scenery.display.length) {
         add("spectra", figure);
     }
     let lines = drawings::lines_of(recorder);
@@ -123,15 +123,17 @@ impl Plots<'_> {
         let lines = panel.lines.iter().map(|line| {
             let t = if line.of.is_none() { &borders } else { &self.t };
             let points = t.iter().copied().zip(line.y.iter().copied());
-            Series::line(&line.label, points).number(line.number)
+            let series = Series::line(&line.label, points).number(line.number);
+            if line.is_raw { series.faint() } else { series }
         });
         let lines: Vec<Series> = lines.collect();
         let label = format!("{} ({})", panel.title, panel.unit);
-        let (range, note) = if panel.cut { cut(&lines, panel.least, &panel.unit) } else { (None, None) };
+        let (range, note) = cut_to(panel.cut_at(), &lines, &panel.unit);
         let y = cut_axis(&label, range, &lines, panel.least);
         let contact = panel.of_contact.as_ref();
         let name = contact.map(|(_, name)| name.clone()).filter(|name| !name.is_empty());
-        let note = note.or(name).or(panel.note.map(str::to_owned));
+        let notes: Vec<String> = [panel.note.clone(), note.or(name)].into_iter().flatten().collect();
+        let note = (!notes.is_empty()).then(|| notes.join("; "));
         let drawn = Panel::new(y.clone()).with(lines).telling_apart().note(note);
         self.marked(guided(drawn.levels(panel.guides.clone()), &panel.guides, &y), contact.map(|(pair, _)| *pair))
     }
@@ -239,6 +241,7 @@ impl Plots<'_> {
         for (pair, contact) in scenery.contacts.iter().enumerate() {
             let (mut normal, mut means, mut tangential, mut bands) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
             let mut impacts = Vec::new();
+            let sums = self.panels.sums_tangential(pair);
             // Colours are for those that touch: of all there would be too many.
             let touching = contact.points.iter().zip(&curves[contact.first..]);
             let touching = touching.filter_map(|(drawn, forces)| Some((drawn, forces.as_ref()?)));
@@ -263,7 +266,11 @@ impl Plots<'_> {
                     borders.iter().copied().zip(mean.into_iter().map(|y| factor * y)).collect::<Vec<_>>()
                 };
                 means.push(mean.map(|mean| Series::line(label, scaled(mean)).number(point)));
-                tangential.push(step(&forces.tangential, sideways, label));
+                match (sums, point) {
+                    (false, _) => tangential.push(step(&forces.tangential, sideways, label)),
+                    (true, 0) => tangential.push(step(&self.panels.tangential_sum(contact), sideways, "")),
+                    (true, _) => {}
+                }
                 if !forces.impacts.is_empty() {
                     impacts.push(step(&forces.impacts, self.panels.impulse_unit.1, label));
                 }
@@ -394,7 +401,12 @@ fn stretches(borders: &[f64], states: &[ContactState]) -> Vec<(f64, f64, Colour)
 /// The range that shows the forces between peaks, where those would dwarf them.
 fn cut(lines: &[Series], least: f64, unit: &str) -> (Option<(f64, f64)>, Option<String>) {
     let sizes = values(lines).map(f64::abs).filter(|y| *y > least && y.is_finite()).collect();
-    let Some((limit, largest)) = cut_at(sizes) else { return (None, None) };
+    cut_to(cut_at(sizes), lines, unit)
+}
+
+/// The range of an axis that ends at a limit, with the largest of what it cuts, and a note on that.
+fn cut_to(at: Option<(f64, f64)>, lines: &[Series], unit: &str) -> (Option<(f64, f64)>, Option<String>) {
+    let Some((limit, largest)) = at else { return (None, None) };
     let negative = values(lines).any(|y| y < -0.01 * limit);
     let low = if negative { -limit } else { -0.06 * limit };
     (Some((low, limit)), Some(format!("peaks cut, up to {} {unit}", shortest(largest, 3))))

@@ -52,6 +52,10 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
     let values = Numbers::of(summary);
     let panels = Panels::of(recorder);
     let smallest = recorder.scenery.blocks.iter().map(|block| block.reach).fold(f64::INFINITY, f64::min);
+    let of_run = accelerograms::OfRun {
+        length: recorder.scenery.display.length,
+        drawn: accelerograms::are_drawn(recorder, &panels.curves),
+    };
     let script = format!("(() => {{\n\"use strict\";\n{}}})();\n", SCRIPTS.concat());
     let parts = BTreeMap::from([
         ("title", escaped(&summary.title)),
@@ -61,12 +65,12 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("verdict", verdict(summary)),
         ("subtitle", subtitle(summary)),
         ("warnings", warnings(summary)),
-        ("tiles", tiles::tiles(&values, summary, smallest, strikers(recorder))),
+        ("tiles", tiles::tiles(&values, summary, (smallest, &panels.units), strikers(recorder))),
         ("residual", scientific(summary.energy.largest_residual)),
         ("notdrawn", not_drawn(&panels)),
-        ("shapes", beams::shapes(recorder)),
-        ("records", accelerograms::section(&recorder.scenery.records, &summary.records, true)),
-        ("borne", beams::borne(recorder, summary)),
+        ("shapes", beams::shapes(recorder, &panels.units)),
+        ("records", accelerograms::section(&recorder.scenery.records, &summary.records, Some(of_run))),
+        ("borne", beams::borne(recorder, &panels.units, summary)),
         ("thrust", thrust::section(recorder, panels.many_at_end())),
         ("rocking", rocking::rocking(&half_cycles(recorder, summary), recorder, summary.dt)),
         ("model", model::model(summary)),

@@ -1,5 +1,5 @@
-//! The mean of a contact force over a window of time, beside its raw values: a beam that rings makes these a band in which the
-//! force that carries is not seen.
+//! The mean of a force over a window of time, beside its raw values: a beam that rings makes these a band in which the force that
+//! carries is not seen.
 
 use super::curves::{Curves, ForceCurve};
 
@@ -41,32 +41,77 @@ fn touches(borders: &[f64], normal: &[f64], window: f64) -> Vec<[usize; 2]> {
 /// stretch in which the contact touches. `None` where the raw values are as smooth.
 pub(super) fn normal(curves: &Curves, forces: &ForceCurve, window: f64) -> Option<Vec<f64>> {
     let borders = curves.borders();
-    // The impulse up to each border; between two, force is constant.
-    let mut impulses = vec![0.0];
-    for (ends, force) in borders.windows(2).zip(&forces.normal) {
-        impulses.push(impulses[impulses.len() - 1] + force * (ends[1] - ends[0]));
-    }
-    let impulse = |t: f64| {
-        let bucket = borders.partition_point(|border| *border <= t).clamp(1, borders.len() - 1) - 1;
-        impulses[bucket] + forces.normal[bucket] * (t - borders[bucket])
-    };
-    if forces.normal.is_empty() || borders.len() * 2 < 40 || window <= 0.0 {
+    if forces.normal.is_empty() || !is_long(&borders) || window <= 0.0 {
         return None;
     }
     // Before it touches and after it has left there is no force, of which a mean beyond would make a ramp.
-    let mut means = vec![0.0; borders.len()];
-    for [first, last] in touches(&borders, &forces.normal, window) {
-        for place in first..=last {
-            let t = borders[place];
-            let (from, to) = ((t - 0.5 * window).max(borders[first]), (t + 0.5 * window).min(borders[last]));
-            means[place] = (impulse(to) - impulse(from)) / (to - from);
-        }
-    }
+    let touches = touches(&borders, &forces.normal, window);
+    let means = over(&borders, &forces.normal, window, &touches);
     let largest = means.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     // Of the time in which it presses: of one that only strikes now and then, a mean would make blocks as wide as the window.
     let pressing = || means.iter().zip(&forces.normal).filter(|(_, raw)| **raw > 0.0);
     let strays = pressing().filter(|(mean, raw)| (*mean - *raw).abs() > STRAY * largest).count();
     (strays as f64 > LEAST * pressing().count() as f64 && pressing().count() * 10 > means.len()).then_some(means)
+}
+
+/// What rings within a bucket has a range larger by this than the change of the means from bucket to bucket.
+const RINGS: f64 = 3.0;
+
+/// Whether there are enough buckets for windows of several.
+fn is_long(borders: &[f64]) -> bool {
+    borders.len() * 2 >= 40
+}
+
+/// Means over windows about the borders of buckets, of a quantity with these means over the buckets: over what of the window lies in a
+/// stretch, given by the borders at its ends. 0 elsewhere.
+fn over(borders: &[f64], values: &[f64], window: f64, stretches: &[[usize; 2]]) -> Vec<f64> {
+    // The integral up to each border; between two, the quantity is constant.
+    let mut integrals = vec![0.0];
+    for (ends, value) in borders.windows(2).zip(values) {
+        integrals.push(integrals[integrals.len() - 1] + value * (ends[1] - ends[0]));
+    }
+    let integral = |t: f64| {
+        let bucket = borders.partition_point(|border| *border <= t).clamp(1, borders.len() - 1) - 1;
+        integrals[bucket] + values[bucket] * (t - borders[bucket])
+    };
+    let mut means = vec![0.0; borders.len()];
+    for [first, last] in stretches {
+        for place in *first..=*last {
+            let t = borders[place];
+            let (from, to) = ((t - 0.5 * window).max(borders[*first]), (t + 0.5 * window).min(borders[*last]));
+            means[place] = (integral(to) - integral(from)) / (to - from);
+        }
+    }
+    means
+}
+
+/// The means of a quantity over the window about the borders of the buckets. `None` unless it rings: strays from its mean, and crosses
+/// it at least once in a window, on average. A slower vibration is seen as it is, and a mean would only flatten it.
+pub(super) fn ringing(curves: &Curves, column: usize, window: f64) -> Option<Vec<f64>> {
+    let borders = curves.borders();
+    if !is_long(&borders) || window <= 0.0 {
+        return None;
+    }
+    let means = over(&borders, &curves.means(column), window, &[[0, borders.len() - 1]]);
+    let largest = means.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let own = curves.means(column);
+    // Two points of the curve lie in each bucket, after the one at the start.
+    let values = curves.curve(column);
+    let points = values[1..].chunks_exact(2).map(|pair| [pair[0], pair[1]]);
+    let (mut far, mut crossings, mut above) = (0, 0, None);
+    for (k, (pair, windows)) in points.zip(means.windows(2)).enumerate() {
+        let mean = 0.5 * (windows[0] + windows[1]);
+        far += usize::from(pair.iter().any(|x| (x - mean).abs() > STRAY * largest));
+        let now = own[k] > mean;
+        crossings += usize::from(above.is_some_and(|before: bool| before != now));
+        above = Some(now);
+        // A bucket of many steps: what moves through it has about the change of its means as range, what rings in it more.
+        let change = |other: Option<&f64>| other.map_or(0.0_f64, |other| (other - own[k]).abs());
+        let drift = change(own.get(k + 1)).max(change(k.checked_sub(1).and_then(|before| own.get(before))));
+        crossings += 2 * usize::from((pair[1] - pair[0]).abs() > RINGS * drift.max(STRAY * largest));
+    }
+    let windows = (borders[borders.len() - 1] - borders[0]) / window;
+    (far as f64 > LEAST * own.len() as f64 && crossings as f64 >= windows).then_some(means)
 }
 
 #[cfg(test)]
@@ -119,6 +164,25 @@ mod tests {
             _ => 0.0,
         });
         assert_eq!(normal(&curves, &forces, window(&curves)), None);
+    }
+
+    #[test]
+    fn what_rings_has_a_mean_and_what_swings_has_none() {
+        let of = |frequency: f64, capacity: usize| {
+            let reaction = |t: f64| 75.0 + 500.0 * (2.0 * std::f64::consts::PI * frequency * t).sin();
+            let mut curves = Curves::new(capacity, 0.0, vec![reaction(0.0)], 0);
+            (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[reaction(t)]));
+            let window = window(&curves);
+            ringing(&curves, 0, window)
+        };
+        // In buckets of two steps, and of 64.
+        for capacity in [10_000, 400] {
+            let means = of(400.0, capacity).unwrap();
+            let inner = &means[means.len() / 20..means.len() * 19 / 20];
+            assert!(inner.iter().all(|mean| (mean - 75.0).abs() < 25.0), "{capacity}: {inner:?}");
+            // Five periods of it are seen without a mean.
+            assert_eq!(of(5.0, capacity), None);
+        }
     }
 
     #[test]

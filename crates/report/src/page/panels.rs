@@ -6,10 +6,15 @@ use super::curves::{Curves, ForceCurve};
 use super::recorder::{NUMBERS, PageRecorder};
 use super::redundant::{Redundant, redundant};
 use super::scenery::ContactDrawn;
-use teeter_scenario::scene::LengthUnit;
 
+mod energies;
 mod forces;
 mod motion;
+mod sections;
+mod units;
+
+use units::contact_sizes;
+pub(crate) use units::{Measure, Unit, Units, cut_at, length_unit, prefix, time_unit};
 
 /// Where on the page a panel stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,13 +31,15 @@ pub(crate) struct TimePanel {
     /// What its file and its place on the page are called.
     pub(crate) id: String,
     /// What is to be known to read it.
-    pub(crate) note: Option<&'static str>,
+    pub(crate) note: Option<String>,
     /// What is plotted.
     pub(crate) title: String,
     /// The contact whose it is, and its name where there are several.
     pub(crate) of_contact: Option<(usize, String)>,
     /// A sentence for those who can't see the figure.
     pub(crate) description: String,
+    /// Of what kind its quantities are, by which the page chooses its unit.
+    pub(crate) measure: Measure,
     pub(crate) unit: String,
     /// Least height of its axis, in its unit.
     pub(crate) least: f64,
@@ -52,6 +59,8 @@ pub(crate) struct Line {
     /// Number of its colour.
     pub(crate) number: usize,
     pub(crate) y: Vec<f64>,
+    /// Whether it stays pale behind a mean, which has its name.
+    pub(crate) is_raw: bool,
     /// Where in the curves it is from; none where its times are the borders of buckets, not those of the curves.
     pub(crate) of: Option<Source>,
 }
@@ -81,7 +90,7 @@ impl Line {
 
     fn from_zero(curves: &Curves, source: Source, label: String, number: usize) -> Self {
         let y = curves.curve(source.column).into_iter().map(|x| source.drawn(x)).collect();
-        Self { label, number, y, of: Some(source) }
+        Self { label, number, y, is_raw: false, of: Some(source) }
     }
 }
 
@@ -120,88 +129,18 @@ pub(crate) struct Panels {
     pub(crate) panels: Vec<TimePanel>,
     pub(crate) portraits: Vec<Portrait>,
     pub(crate) left_out: Vec<LeftOut>,
+    /// The units that quantities have on this page.
+    pub(crate) units: Units,
     /// The prefixes of the units of normal and of tangential forces, with their factors, by contacts.
-    pub(crate) force_units: Vec<[(&'static str, f64); 2]>,
+    pub(crate) force_units: Vec<[Unit; 2]>,
     /// The prefix of the unit of impulses of impacts, with its factor: that of the largest of all.
-    pub(crate) impulse_unit: (&'static str, f64),
+    pub(crate) impulse_unit: Unit,
     /// Whether normal forces are more than rounding, by contacts: not of those that only strike.
     pub(crate) normal: Vec<bool>,
     /// Whether tangential forces are more than rounding, by contacts.
     pub(crate) tangential: Vec<bool>,
     /// What equilibrium leaves open of the forces, by contacts.
     pub(crate) redundant: Vec<Redundant>,
-}
-
-/// Numbers of a length as large as this are in a larger unit than the scene's.
-const LARGE: f64 = 1e4;
-
-/// The unit of lengths on an axis, with its number to a metre: the scene's, unless it makes numbers too small or too large.
-pub(crate) fn length_unit(of: LengthUnit, largest: f64) -> (&'static str, f64) {
-    let own = (of.word(), of.per_metre());
-    if largest * own.1 >= LARGE {
-        return if largest >= LARGE { ("km", 1e-3) } else { ("m", 1.0) };
-    }
-    let units = [own, ("mm", 1e3), ("µm", 1e6), ("nm", 1e9)];
-    let fits = |(_, factor): &&(&'static str, f64)| largest == 0.0 || largest * factor >= 0.5;
-    units.iter().find(fits).copied().unwrap_or(("nm", 1e9))
-}
-
-/// The prefix of a unit, with its factor, that makes the largest of some values a handy number.
-pub(crate) fn prefix(largest: f64) -> (&'static str, f64) {
-    let large = [("G", 1e-9), ("M", 1e-6), ("k", 1e-3), ("", 1.0)];
-    let small = [("m", 1e3), ("µ", 1e6), ("n", 1e9), ("p", 1e12), ("f", 1e15), ("a", 1e18), ("z", 1e21)];
-    large.into_iter().chain(small).find(|(_, factor)| largest * factor >= 0.5).unwrap_or(("", 1.0))
-}
-
-/// The largest of forces as they are seen: where the peaks of impacts dwarf all else and are cut, the size at which they are.
-fn seen<'a>(forces: impl Iterator<Item = &'a f64>) -> f64 {
-    let mut sizes: Vec<f64> = forces.map(|f| f.abs()).filter(|f| f.is_finite()).collect();
-    let most = largest(&sizes);
-    sizes.retain(|f| *f > LEAST_FORCE * most);
-    cut_at(sizes).map_or(most, |(limit, _)| limit)
-}
-
-/// The prefixes of the units of normal and tangential forces, with their factors, by contacts: those of the largest normal forces of all, so that forces can
-/// be compared, but for what would be [`SMALL`] there, as friction that hardly acts beside a weight.
-fn force_units(recorder: &PageRecorder, forces: &[Option<ForceCurve>]) -> Vec<[(&'static str, f64); 2]> {
-    // Peaks of springs are forces that act, and are shown whole.
-    let has_springs = recorder.scenery.contacts.iter().any(|contact| contact.has_duration);
-    let seen = |forces: &mut dyn Iterator<Item = &f64>| if has_springs { largest(forces) } else { seen(forces) };
-    let common = prefix(seen(&mut forces.iter().flatten().flat_map(|forces| &forces.normal)));
-    let unit = |size: f64| if size > 0.0 && size * common.1 < SMALL { prefix(size) } else { common };
-    let of = |contact: &ContactDrawn| {
-        let own = || forces[contact.first..contact.first + contact.points.len()].iter().flatten();
-        let sizes = [
-            seen(&mut own().flat_map(|forces| &forces.normal)),
-            seen(&mut own().flat_map(|forces| &forces.tangential)),
-        ];
-        sizes.map(unit)
-    };
-    recorder.scenery.contacts.iter().map(of).collect()
-}
-
-/// Numbers below this are small for an axis: their unit is another one.
-const SMALL: f64 = 0.1;
-
-/// A force this many times the one that nine of ten samples stay below is a peak of an impact, whose height is that of
-/// the sample's length; the axis then ends at half as much, for the rest to be legible.
-const PEAK: f64 = 6.0;
-
-/// Where an axis of forces of these sizes ends because peaks dwarf the rest, and the largest of them.
-pub(crate) fn cut_at(mut sizes: Vec<f64>) -> Option<(f64, f64)> {
-    sizes.sort_by(f64::total_cmp);
-    let (&usual, &largest) = (sizes.get(sizes.len() * 9 / 10)?, sizes.last()?);
-    (largest > PEAK * usual).then_some((0.5 * PEAK * usual, largest))
-}
-
-/// A force below this part of the largest is none.
-const LEAST_FORCE: f64 = 1e-6;
-
-/// The unit of a time axis as long as `duration`, with its number to a second.
-pub(crate) fn time_unit(duration: f64) -> (&'static str, f64) {
-    let units = [("s", 1.0), ("ms", 1e3), ("µs", 1e6)];
-    // 0.1 s is still read well in seconds.
-    units.into_iter().find(|(_, factor)| duration * factor >= 0.099).unwrap_or(("ns", 1e9))
 }
 
 impl Panels {
@@ -212,9 +151,10 @@ impl Panels {
             let mut panels = Self {
                 normal: vec![true; recorder.scenery.contacts.len()],
                 tangential: vec![true; recorder.scenery.contacts.len()],
-                redundant: redundant(recorder, &curves, &forces),
-                force_units: force_units(recorder, &forces),
+                units: Units::of(recorder.scenery.display.length, &[]),
+                force_units: Vec::new(),
                 impulse_unit: prefix(largest(forces.iter().flatten().flat_map(|forces| &forces.impacts))),
+                redundant: redundant(recorder, &curves, &forces),
                 curves,
                 forces,
                 panels: Vec::new(),
@@ -241,14 +181,39 @@ impl Panels {
         self.contacts(recorder);
         self.sections(recorder);
         self.energies(recorder);
+        self.choose_units(recorder);
         if !recorder.scenery.is_crowded() {
             self.portraits(recorder);
+        }
+    }
+
+    /// Gives quantities of a kind one unit, and the panels over time, so far in SI units, theirs.
+    fn choose_units(&mut self, recorder: &PageRecorder) {
+        let contacts = contact_sizes(recorder, &self.forces);
+        let of_panels = self.panels.iter().map(|panel| (panel.measure, panel.size()));
+        let of_contacts = contacts.iter().flatten().map(|size| (Measure::Force, *size));
+        let sizes: Vec<_> = of_panels.chain(of_contacts).filter(|(measure, _)| *measure != Measure::Own).collect();
+        self.units = Units::of(recorder.scenery.display.length, &sizes);
+        self.force_units = contacts.iter().map(|pair| pair.map(|size| self.units.unit(Measure::Force, size))).collect();
+        for panel in self.panels.iter_mut().filter(|panel| panel.measure != Measure::Own) {
+            panel.show_in(self.units.unit(panel.measure, panel.size()));
         }
     }
 
     /// Whether forces of contacts are one of many sets at the end of the run.
     pub(crate) fn many_at_end(&self) -> bool {
         self.redundant.iter().any(|redundant| redundant.at_end)
+    }
+
+    /// Whether the plot of a contact's tangential force shows only its sum over the points: that of a contact whose points share it in one
+    /// of many ways, which would be drawn as jumps between its feet.
+    pub(crate) fn sums_tangential(&self, pair: usize) -> bool {
+        self.redundant[pair].shares
+    }
+
+    /// The tangential force of a contact over all its points, N, by buckets.
+    pub(crate) fn tangential_sum(&self, contact: &ContactDrawn) -> Vec<f64> {
+        sum(self.forces[contact.first..contact.first + contact.points.len()].iter().flatten())
     }
 
     /// How many numbers the curves take on the page.
@@ -272,34 +237,12 @@ impl Panels {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lengths_are_in_the_unit_of_the_scene_unless_too_small_for_it() {
-        assert_eq!(length_unit(LengthUnit::Centimetre, 0.18), ("cm", 100.0));
-        assert_eq!(length_unit(LengthUnit::Centimetre, 1.2e-3), ("mm", 1e3));
-        assert_eq!(length_unit(LengthUnit::Metre, 3e-7), ("nm", 1e9));
-        assert_eq!(length_unit(LengthUnit::Millimetre, 0.0), ("mm", 1e3));
-        // A block that flies off, in a scene of centimetres.
-        assert_eq!(length_unit(LengthUnit::Centimetre, 99.0), ("cm", 100.0));
-        assert_eq!(length_unit(LengthUnit::Centimetre, 6e3), ("m", 1.0));
-        assert_eq!(length_unit(LengthUnit::Metre, 6e4), ("km", 1e-3));
-    }
-
-    #[test]
-    fn peaks_that_are_cut_dont_set_the_unit() {
-        let mut forces = vec![14.0; 99];
-        forces.push(1820.0);
-        assert_eq!((seen(forces.iter()), prefix(seen(forces.iter())).0), (42.0, ""));
-        assert_eq!(seen([14.0, 20.0, 0.0].iter()), 20.0);
-        assert_eq!(seen([].iter()), 0.0);
-    }
-
-    #[test]
-    fn any_size_has_a_unit_that_suits() {
-        assert_eq!([4e9, 6.8e8, 2e4, 400.0, 0.2, 4e-21].map(|x| prefix(x).0), ["G", "G", "k", "", "m", "z"]);
-        assert_eq!([3600.0, 0.1, 1e-3, 3e-6, 1e-9].map(|t| time_unit(t).0), ["s", "s", "ms", "µs", "ns"]);
-    }
+/// The tangential force of several points together, N, by buckets.
+fn sum<'a>(points: impl Iterator<Item = &'a ForceCurve>) -> Vec<f64> {
+    let add = |mut total: Vec<f64>, forces: &ForceCurve| {
+        total.resize(forces.tangential.len(), 0.0);
+        total.iter_mut().zip(&forces.tangential).for_each(|(total, force)| *total += force);
+        total
+    };
+    points.fold(Vec::new(), add)
 }

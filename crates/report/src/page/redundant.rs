@@ -39,8 +39,13 @@ impl Redundant {
     /// What a figure says beside the tangential forces, or the normal ones.
     pub(super) fn note(self, tangential: bool) -> Option<&'static str> {
         match self {
+            Self { shares: true, forces: false, .. } if tangential => {
+                Some("sum over the points, as equilibrium leaves open how those that stick share it")
+            }
+            Self { shares: true, .. } if tangential => {
+                Some("sum over the points; one of many equilibria of rigid bodies")
+            }
             Self { forces: true, .. } => Some(NOTE),
-            Self { shares: true, .. } if tangential => Some("only the sum over points that stick is determined"),
             _ => None,
         }
     }

@@ -1,7 +1,7 @@
 //! Plots over the span of beams: how far section forces went, and the deflected shape at chosen times.
 
 use super::content::{holds, largest};
-use super::panels::{length_unit, prefix};
+use super::panels::{Measure, Units};
 use super::recorder::{BLOCK_FRAME, PageRecorder};
 use super::widths::for_any_width;
 use crate::with_digits;
@@ -16,7 +16,7 @@ pub(super) fn on_page(figure: Figure) -> String {
 }
 
 /// Moment and transverse force over the span: their least and largest in the run, on either side of each node.
-pub(super) fn envelopes(recorder: &PageRecorder, id: &str) -> Option<Figure> {
+pub(super) fn envelopes(recorder: &PageRecorder, units: &Units, id: &str) -> Option<Figure> {
     let drawn: Vec<_> = recorder
         .beams
         .iter()
@@ -35,13 +35,14 @@ pub(super) fn envelopes(recorder: &PageRecorder, id: &str) -> Option<Figure> {
     };
     let (moment, force) = (of(false).max(of(true) * span), of(true).max(of(false) / span));
     let mut panels = Vec::new();
-    for (shear, what, unit_of, scale) in
-        [(false, "Bending moment M", "N m", moment), (true, "Transverse force V", "N", force)]
-    {
+    for (shear, what, measure, unit_of, scale) in [
+        (false, "Bending moment M", Measure::Moment, "N m", moment),
+        (true, "Transverse force V", Measure::Force, "N", force),
+    ] {
         if !holds(of(shear), scale) {
             continue;
         }
-        let (prefix, factor) = prefix(of(shear));
+        let (prefix, factor) = units.unit(measure, of(shear));
         let mut lines = Vec::new();
         for (record, x, envelope) in &drawn {
             let ends = if shear { &envelope.shear_ends } else { &envelope.moment_ends };
@@ -85,7 +86,7 @@ const TELLING: f64 = 0.3;
 const BEAMS: usize = 4;
 
 /// The deflected shapes of the beams at chosen times.
-pub(super) fn shapes(recorder: &PageRecorder, id: &str) -> Option<Figure> {
+pub(super) fn shapes(recorder: &PageRecorder, units: &Units, id: &str) -> Option<Figure> {
     let scenery = &recorder.scenery;
     let rows: Vec<(f64, &[f64])> = recorder.kept.frames.rows().collect();
     let run = rows.last()?.0 - rows.first()?.0;
@@ -100,7 +101,7 @@ pub(super) fn shapes(recorder: &PageRecorder, id: &str) -> Option<Figure> {
         if !holds(most, 1e-3 * beam.span) || panels.len() == BEAMS {
             continue;
         }
-        let (name, factor) = length_unit(unit, most);
+        let (name, factor) = units.unit(Measure::Deflection, most);
         let lines =
             chosen(&rows.iter().map(|row| row.0).collect::<Vec<_>>(), &sizes, run).into_iter().map(|(k, word)| {
                 let (t, row) = rows[k];

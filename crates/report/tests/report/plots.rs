@@ -72,6 +72,20 @@ fn forces_that_equilibrium_leaves_open_are_told_as_one_of_many_sets() {
 }
 
 #[test]
+fn a_tangential_force_that_feet_share_in_one_of_many_ways_is_drawn_as_their_sum() {
+    let run = run("shaken-sum", &scenario_text("shaken-ground"));
+    let page = data(&run.html);
+    assert_eq!(page["forces"]["shares"], serde_json::json!([0]));
+    let svg = figures(&run.page).into_iter().find(|(file, _)| file == "contact_forces.svg").unwrap().1;
+    let (_, tangential) = svg.split_once("Tangential force").unwrap();
+    assert!(svg.contains("sum over the points"));
+    assert_eq!(svg.matches("Tangential force").count(), 1, "{tangential}");
+    // One that rocks stands on one foot at a time, whose force is known.
+    let rocks = scenario("free-rocking-on-beam");
+    assert_eq!(data(&rocks.html)["forces"]["shares"].as_array().map_or(0, Vec::len), 0);
+}
+
+#[test]
 fn friction_that_rises_in_impacts_says_that_it_shares_their_work() {
     let tilted = "title = 't'\n[time]\nend = '0.6 s'\nstep = '100 us'\n[ground]\n[material.a]\ndensity = '2000 kg/m^3'\n[block.b]\n\
         material = 'a'\nwidth = '10 cm'\nheight = '20 cm'\ndepth = '10 cm'\nposition = ['0 m', '60 cm']\nangle = '25 deg'\n\

@@ -12,8 +12,12 @@ struct Run {
 }
 
 fn run(name: &str, motion: &str) -> Run {
+    run_to("50 ms", name, motion)
+}
+
+fn run_to(end: &str, name: &str, motion: &str) -> Run {
     let text = format!(
-        "[time]\nend = '50 ms'\nstep = '1 ms'\n[ground]\n{motion}\n[material.m]\ndensity = '1000 kg/m^3'\n\
+        "[time]\nend = '{end}'\nstep = '1 ms'\n[ground]\n{motion}\n[material.m]\ndensity = '1000 kg/m^3'\n\
          [block.b]\nmaterial = 'm'\nwidth = '10 cm'\nheight = '10 cm'\ndepth = '10 cm'\non = 'ground'\nat = '0 m'\n\
          [contact.c]\nbetween = ['b', 'ground']\nfriction = 0.9\n"
     );
@@ -55,7 +59,7 @@ fn a_record_is_measured_and_drawn() {
     let names: Vec<&str> = run.figures.iter().map(|(name, _)| name.as_str()).collect();
     assert!(names.ends_with(&["energy.svg", "records.svg", "spectra.svg"]), "{names:?}");
     let figure = |name: &str| &run.figures.iter().find(|(file, _)| file == name).unwrap().1;
-    for label in ["Acceleration a (m/s²)", "Velocity v (m/s)", "Displacement d (mm)", "t (s)"] {
+    for label in ["Acceleration a (m/s²)", "Velocity v (cm/s)", "Displacement d (cm)", "t (s)"] {
         assert!(figure("records.svg").contains(label), "{label}");
     }
     for label in ["Pseudo-acceleration S<tspan", "Displacement S<tspan", "Natural period T (s)"] {
@@ -76,4 +80,17 @@ fn two_records_share_their_figures_and_a_scene_without_has_none() {
     let none = run("none", "");
     assert!(none.summary.get("records").is_none() && !none.html.contains("id=\"records\""));
     assert!(none.figures.iter().all(|(file, _)| file != "records.svg" && file != "spectra.svg"));
+}
+
+#[test]
+fn a_record_that_the_plots_of_the_ground_show_is_not_drawn_again() {
+    let motion = "motion.x = { record = 'quake.csv' }";
+    let [part, whole] = [("part", "50 ms"), ("whole", "2 s")].map(|(name, end)| run_to(end, name, motion));
+    let again = "Time since the start of the record";
+    assert!(part.html.contains(again), "a run of 50 ms shows no record of 2 s");
+    assert!(!whole.html.contains(again));
+    for run in [part, whole] {
+        assert!(run.html.contains("Pseudo-acceleration"));
+        assert!(run.figures.iter().any(|(file, svg)| file == "records.svg" && svg.contains(again)));
+    }
 }

@@ -1,5 +1,6 @@
 //! What beams bear, in the files of a run: exact where statics is, extremes over all steps, and who asks for nothing gets nothing.
 
+use crate::page::{data, numbers, panel};
 use crate::table::{column, columns_of};
 use serde_json::Value;
 use std::fs;
@@ -15,10 +16,17 @@ struct Run {
     envelopes: Option<String>,
 }
 
+fn scenario(name: &str) -> Vec<u8> {
+    fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenarios/{name}.toml"))).unwrap()
+}
+
 fn run(name: &str, sets: &[(&str, &str)]) -> Run {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/free-rocking-on-beam.toml");
+    run_of(name, &scenario("free-rocking-on-beam"), sets)
+}
+
+fn run_of(name: &str, text: &[u8], sets: &[(&str, &str)]) -> Run {
     let sets: Vec<(String, String)> = sets.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
-    let resolved = teeter_scenario::load(&fs::read(file).unwrap(), name, name, &sets).unwrap();
+    let resolved = teeter_scenario::load(text, name, name, &sets).unwrap();
     let mut simulation = Simulation::new(&resolved.scene).unwrap();
     let layout = simulation.layout.clone();
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("sections-{}", std::process::id())).join(name);
@@ -186,4 +194,49 @@ fn what_leaves_the_model_is_warned_of_in_the_summary() {
     let coarse = |step| [("time.scheme", "moreau-jean"), ("time.step", step), ("output.every", step)];
     assert_eq!(count("shallow", "deep-penetration", &coarse("1 ms")), 0);
     assert!(count("deep", "deep-penetration", &coarse("50 ms")) > 0);
+}
+
+/// A block that rocks on a beam with two supports more, which ring under it.
+const ON_FOUR_SUPPORTS: &str = "[time]\nend = '0.4 s'\nstep = '100 us'\n[material.a]\ndensity = '7850 kg/m^3'\n\
+    youngs_modulus = '210 GPa'\n[beam.plank]\nmaterial = 'a'\nspan = '3 m'\nwidth = '10 cm'\nthickness = '2 cm'\nelements = 24\n\
+    supports = ['pinned', 'clamped']\nself_weight = true\nstart = 'static'\nprobes = ['50 cm']\nrecord = ['shear', 'stress']\n\
+    reactions = true\nsupport.a = { at = '1 m', spring = '5 MN/m' }\nsupport.b = { at = '2 m', spring = '5 MN/m' }\n\
+    [block.b]\nmaterial = 'a'\nwidth = '10 cm'\nheight = '15 cm'\ndepth = '10 cm'\non = 'plank'\nat = '1.4 m'\ntilt = '4 deg'\n\
+    [contact.feet]\nbetween = ['b', 'plank']\nfriction = 0.5\n";
+
+#[test]
+fn reactions_that_ring_are_pale_behind_their_means() {
+    let run = run_of("four-supports", ON_FOUR_SUPPORTS.as_bytes(), &[]);
+    let page = data(&run.html);
+    let reactions = panel(&page, "section-reaction").unwrap();
+    let series = reactions["series"].as_array().unwrap();
+    let (raw, means): (Vec<_>, Vec<_>) = series.iter().partition(|line| line["raw"] == true);
+    assert_eq!([raw.len(), means.len()], [4, 4]);
+    assert_eq!(series.iter().position(|line| line["raw"] != true), Some(4), "what is pale lies behind");
+    assert!(means.iter().all(|line| line["label"] != "" && line["at_borders"] == true));
+    assert_eq!(reactions["note"], "pale: all steps; strong: means over 10 ms");
+    let range =
+        |lines: &[&Value]| lines.iter().flat_map(|line| numbers(&line["y"])).fold(0.0_f64, |most, y| most.max(y.abs()));
+    assert!(range(&raw) > 2.0 * range(&means), "{} {}", range(&raw), range(&means));
+    // At the start all stands still, so that the means are statics.
+    let start = |lines: &[&Value]| lines.iter().map(|line| numbers(&line["y"])[0]).sum::<f64>();
+    assert!((start(&means) / start(&raw) - 1.0).abs() < 0.05, "{} {}", start(&means), start(&raw));
+    let stress = panel(&page, "section-stress").unwrap()["series"].as_array().unwrap();
+    assert!(stress.iter().all(|line| line["raw"] != true), "a size has no mean that carries");
+    // A beam under a moving force swings slowly, and is drawn as it is.
+    let slow = data(&run_of("two-span", &scenario("two-span-beam"), &[]).html);
+    let reactions = panel(&slow, "section-reaction").unwrap()["series"].as_array().unwrap();
+    assert!(reactions.iter().all(|line| line["raw"] != true) && reactions.len() == 3);
+    let svg = run.figures.iter().find(|(file, _)| file == "section_forces.svg").unwrap().1.as_str();
+    assert!(svg.contains("strong: means over 10 ms"));
+}
+
+#[test]
+fn forces_of_contacts_and_of_beams_have_one_unit() {
+    let page = data(&run_of("units", ON_FOUR_SUPPORTS.as_bytes(), &[]).html);
+    let unit = |id: &str| panel(&page, id).unwrap()["unit"].as_str().unwrap().to_owned();
+    let [reaction, shear] = ["section-reaction", "section-shear"].map(unit);
+    let contact = format!("{}N", page["forces"]["units"][0][0][0].as_str().unwrap());
+    assert_eq!([reaction.as_str(), shear.as_str()], [contact.as_str(); 2]);
+    assert_eq!(unit("energy"), unit("works"));
 }

@@ -22,7 +22,7 @@ fn a_chip_of_a_micrometre_has_axes_that_one_can_read() {
     let run = run("micrometre", &text);
     let page = data(&run.html);
     let unit = |id: &str| panel(&page, id).unwrap()["unit"].as_str().unwrap().to_owned();
-    assert_eq!(["x", "y", "energy"].map(unit), ["nm", "µm", "zJ"]);
+    assert_eq!(["x", "y", "energy"].map(unit), ["µm", "µm", "zJ"], "one unit for both coordinates");
     // The weight is 91 fN; impacts have impulses, of some 1e-18 N s.
     let unit = &page["forces"]["units"][0][0];
     assert_eq!((&unit[0], &unit[1]), (&"f".into(), &1e15.into()));

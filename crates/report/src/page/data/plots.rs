@@ -15,7 +15,7 @@ pub(super) struct PanelData {
     id: String,
     title: String,
     #[serde(skip_serializing_if = "Option::is_none")]
-    note: Option<&'static str>,
+    note: Option<String>,
     unit: String,
     least: f64,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -34,6 +34,9 @@ pub(super) struct PanelData {
 struct SeriesData {
     label: String,
     index: usize,
+    /// Whether it stays pale behind a mean, which has its name.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    raw: bool,
     /// Whether its times are the borders of the forces, not those of the curves.
     at_borders: bool,
     y: Column,
@@ -72,7 +75,15 @@ impl SeriesData {
         let y = Column::of(&line.y, steps);
         let any = !others.is_empty();
         let (other_at, others) = (any.then(|| Column::counts(&other_at)), any.then(|| Column::of(&others, steps)));
-        Self { label: line.label.clone(), index: line.number, at_borders: line.of.is_none(), y, other_at, others }
+        Self {
+            label: line.label.clone(),
+            index: line.number,
+            raw: line.is_raw,
+            at_borders: line.of.is_none(),
+            y,
+            other_at,
+            others,
+        }
     }
 }
 
@@ -151,7 +162,7 @@ pub(super) struct ForceData {
     /// Contacts whose forces are one of many sets.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     redundant: Vec<usize>,
-    /// Others whose points share their tangential force in one of many ways.
+    /// Contacts whose points share their tangential force in one of many ways, of which the sum over the points is plotted.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     shares: Vec<usize>,
     points: Vec<PointForces>,
@@ -181,7 +192,7 @@ pub(super) fn time_panels(recorder: &PageRecorder, panels: &Panels) -> Vec<Panel
             _ => panel.title.clone(),
         },
         contact: panel.of_contact.as_ref().map(|(pair, _)| *pair),
-        note: panel.note,
+        note: panel.note.clone(),
         unit: panel.unit.clone(),
         least: digits(panel.least),
         guides: panel.guides.iter().copied().map(digits).collect(),
@@ -251,9 +262,7 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         forceless: (0..panels.normal.len()).filter(|pair| !panels.normal[*pair]).collect(),
         frictionless: (0..panels.tangential.len()).filter(|pair| !panels.tangential[*pair]).collect(),
         redundant: (0..panels.redundant.len()).filter(|pair| panels.redundant[*pair].forces).collect(),
-        shares: (0..panels.redundant.len())
-            .filter(|pair| panels.redundant[*pair].shares && !panels.redundant[*pair].forces)
-            .collect(),
+        shares: (0..panels.redundant.len()).filter(|pair| panels.sums_tangential(*pair)).collect(),
         points: points.collect(),
     }
 }

@@ -1,17 +1,19 @@
 //! What beams bore: deflected shapes, stress, envelopes, reactions.
 
 use super::rocking::decimals;
-use crate::page::panels::length_unit;
+use crate::page::content::largest;
+use crate::page::panels::{Measure, Units, length_unit};
 use crate::page::recorder::PageRecorder;
 use crate::page::span;
+use crate::sections::ReactionRange;
 use crate::verdict::percent;
-use crate::{Summary, with_digits};
+use crate::{Summary, shortest, with_digits};
 use std::fmt::Write;
 use teeter_plot::escaped;
 
 /// The deflected shapes at chosen times.
-pub(super) fn shapes(recorder: &PageRecorder) -> String {
-    let figure = span::shapes(recorder, "shapes").map(span::on_page);
+pub(super) fn shapes(recorder: &PageRecorder, units: &Units) -> String {
+    let figure = span::shapes(recorder, units, "shapes").map(span::on_page);
     figure.map_or_else(String::new, |figure| {
         format!(
             "<section id=\"shapes\" class=\"panel\" aria-labelledby=\"shapes-title\">\n\
@@ -21,7 +23,7 @@ pub(super) fn shapes(recorder: &PageRecorder) -> String {
 }
 
 /// What beams bore: largest stress, reactions, envelopes.
-pub(super) fn borne(recorder: &PageRecorder, summary: &Summary) -> String {
+pub(super) fn borne(recorder: &PageRecorder, units: &Units, summary: &Summary) -> String {
     let mut html = String::new();
     let several = summary.beams.len() > 1;
     let stresses = summary.beams.iter().filter_map(|borne| {
@@ -36,7 +38,7 @@ pub(super) fn borne(recorder: &PageRecorder, summary: &Summary) -> String {
             escaped(&borne.beam),
             largest.stress,
             with_digits(largest.stress, "Pa", 4),
-            with_digits(largest.x, "m", 4),
+            place(recorder, largest.x),
             with_digits(largest.t, "s", 6),
             part.unwrap_or_default()
         ))
@@ -55,18 +57,24 @@ pub(super) fn borne(recorder: &PageRecorder, summary: &Summary) -> String {
              {stresses}{depends}</section>"
         );
     }
-    if let Some(figure) = span::envelopes(recorder, "envelopes").map(span::on_page) {
+    if let Some(figure) = span::envelopes(recorder, units, "envelopes").map(span::on_page) {
         let _ = writeln!(
             html,
             "<section id=\"envelopes\" class=\"panel\" aria-labelledby=\"envelopes-title\">\n<h3 id=\"envelopes-title\">Moment \
              and transverse force over the span, least and largest of all steps</h3>\n{figure}</section>"
         );
     }
-    html.push_str(&reactions(recorder, summary));
+    html.push_str(&reactions(recorder, units, summary));
     html
 }
 
-fn reactions(recorder: &PageRecorder, summary: &Summary) -> String {
+/// A place along a beam in the unit of the plots.
+fn place(recorder: &PageRecorder, x: f64) -> String {
+    let unit = recorder.scenery.display.length;
+    format!("{} {}", shortest(x * unit.per_metre(), 4), unit.word())
+}
+
+fn reactions(recorder: &PageRecorder, units: &Units, summary: &Summary) -> String {
     let supports: Vec<_> =
         summary.beams.iter().flat_map(|borne| borne.reactions.iter().map(|range| (&borne.beam, range))).collect();
     if supports.is_empty() {
@@ -83,16 +91,23 @@ fn reactions(recorder: &PageRecorder, summary: &Summary) -> String {
     let _ = write!(html, "<th scope=\"col\">x<br><small>{unit}</small></th>");
     // Pinned ends have none.
     let turned = supports.iter().any(|(_, range)| range.couple != [0.0; 2]);
-    let columns = [("Force", "N"), ("Couple", "N m")];
-    for (what, unit) in &columns[..if turned { 2 } else { 1 }] {
+    let most = |of: fn(&ReactionRange) -> [f64; 2]| {
+        largest(supports.iter().flat_map(|(_, range)| of(range)).collect::<Vec<_>>().iter())
+    };
+    let force_unit = units.unit(Measure::Force, most(|range| range.force));
+    let couple_unit = units.unit(Measure::Moment, most(|range| range.couple));
+    let columns = [("Force", force_unit, "N"), ("Couple", couple_unit, "N m")];
+    for (what, (prefix, _), unit) in &columns[..if turned { 2 } else { 1 }] {
         for when in ["at the start", "least", "largest"] {
-            let _ = write!(html, "<th scope=\"col\">{what} {when}<br><small>{unit}</small></th>");
+            let _ = write!(html, "<th scope=\"col\">{what} {when}<br><small>{prefix}{unit}</small></th>");
         }
     }
     html.push_str("</tr></thead>\n<tbody>\n");
     let shown = if turned { 7 } else { 4 };
     let rows = supports.iter().map(|(_, range)| {
         let ([force, couple], [low, high], [least, most]) = (range.start, range.force, range.couple);
+        let [force, low, high] = [force, low, high].map(|force| force_unit.1 * force);
+        let [couple, least, most] = [couple, least, most].map(|couple| couple_unit.1 * couple);
         [factor * range.x, force, low, high, couple, least, most]
     });
     let rows: Vec<[f64; 7]> = rows.collect();

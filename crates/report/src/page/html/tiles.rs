@@ -1,6 +1,7 @@
 //! The numbers of the summary: those that one wants to know first as tiles, all others as a table.
 
 use super::{scientific, with_code, with_prefix};
+use crate::page::panels::{Measure, Units};
 use crate::page::{content, rounded};
 use crate::verdict::{BodyVerdict, Fate, ROCKED};
 use crate::{Summary, shortest, with_digits};
@@ -119,9 +120,19 @@ fn sliding(summary: &Summary) -> Vec<(String, String, String)> {
     tiles.into_iter().flatten().collect()
 }
 
-/// `smallest`: the largest distance from the mass centre to the outline of the smallest block, m. `strikers`: what strikes, in
-/// words after "Impacts".
-pub(super) fn tiles(values: &Numbers, summary: &Summary, smallest: f64, strikers: &str) -> String {
+/// The energy that was lost, in the unit of the plots of energies.
+fn lost(summary: &Summary, units: &Units) -> String {
+    let (lost, scale) = (summary.energy.lost, summary.energy.scale);
+    if !content::holds(lost.abs(), scale) {
+        return "0 J".to_owned();
+    }
+    let (prefix, factor) = units.unit(Measure::Energy, lost.abs());
+    format!("{} {prefix}J", shortest(factor * lost, 3).replace('-', "\u{2212}"))
+}
+
+/// `smallest`: the largest distance from the mass centre to the outline of the smallest block, m; with the units of the plots. `strikers`: what
+/// strikes, in words after "Impacts".
+pub(super) fn tiles(values: &Numbers, summary: &Summary, (smallest, units): (f64, &Units), strikers: &str) -> String {
     let mut html = String::new();
     let seconds = |t: Option<f64>| t.map(|t| as_told(t, "s"));
     for (path, label, shown) in sliding(summary) {
@@ -150,7 +161,7 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, smallest: f64, strikers
             }
             "overturned_at" => ("First overturned at", seconds(summary.overturned_at)),
             "rests_from" => ("All at rest from", seconds(summary.rests_from)),
-            "energy.lost" => ("Energy lost", Some(above_rounding(summary.energy.lost, summary.energy.scale, "J"))),
+            "energy.lost" => ("Energy lost", Some(lost(summary, units))),
             "impact_count" => (impacts.as_str(), Some(summary.impact_count.to_string())),
             "horizon" => ("Predictable up to", seconds(summary.horizon)),
             "reclosure_count" => {

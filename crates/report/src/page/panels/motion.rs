@@ -1,6 +1,6 @@
 //! Plots of how blocks, beams, ground and supports move.
 
-use super::{Curves, Line, Panels, Place, Portrait, PortraitLine, Source, TimePanel, length_unit};
+use super::{Curves, Line, Measure, Panels, Place, Portrait, PortraitLine, Source, TimePanel};
 use crate::driven::Driven;
 use crate::page::content::{ROUNDING, holds, largest, travel};
 use crate::page::orbit::Point;
@@ -90,12 +90,10 @@ impl Panels {
                 Some((_, start)) if from_start => start[BLOCK_FRAME * k + c],
                 _ => 0.0,
             };
-            let (unit, factor) = if c == PHI {
-                (display.angle.symbol(), display.angle.per_radian())
-            } else {
-                let most = if from_start { far } else { largest(moving.iter().flat_map(|(_, values)| values)) };
-                length_unit(display.length, most)
-            };
+            // Lengths are in metres until the units of the page are chosen.
+            let (unit, factor) =
+                if c == PHI { (display.angle.symbol(), display.angle.per_radian()) } else { ("", 1.0) };
+            let measures = if c == PHI { [Measure::Own; 2] } else { [Measure::Position, Measure::Velocity] };
             // Wide enough that what is at rest looks so, and rounding on top of it isn't seen.
             let least = if c == PHI { 4e-5 * factor } else { 1e-4 * reach * factor };
             let line = |curves: &Curves, k: usize, c: usize, zero: f64, factor: f64| {
@@ -103,12 +101,13 @@ impl Panels {
                 Line::from_zero(curves, source, block_label(recorder, k), k)
             };
             let guides = if c == PHI { critical_angles(recorder, &moving, factor) } else { Vec::new() };
-            let panel = |id: &str, title: &str, unit: String, lines, guides, least| TimePanel {
+            let panel = |id: &str, title: &str, (measure, unit): (Measure, String), lines, guides, least| TimePanel {
                 id: id.to_owned(),
                 note: None,
                 of_contact: None,
                 title: title.to_owned(),
                 description: format!("{title} of the blocks over time"),
+                measure,
                 unit,
                 least,
                 guides,
@@ -118,17 +117,10 @@ impl Panels {
             };
             let lines = moving.iter().map(|(k, _)| line(&self.curves, *k, c, zero(*k), factor)).collect();
             let name = if from_start { coordinate.from_start } else { coordinate.name };
-            self.panels.push(panel(coordinate.id, name, unit.to_owned(), lines, guides, least));
-            let rates: Vec<_> =
-                moving.iter().map(|(k, _)| (*k, self.curves.curve(BLOCK_COLUMNS * k + 3 + c))).collect();
-            let (unit, factor) = if c == PHI {
-                ("rad", 1.0)
-            } else {
-                length_unit(display.length, largest(rates.iter().flat_map(|(_, values)| values)))
-            };
-            let lines = rates.iter().map(|(k, _)| line(&self.curves, *k, 3 + c, 0.0, factor)).collect();
-            let least = if c == PHI { 2e-3 } else { 1e-4 * reach * factor };
-            let unit = format!("{unit}/s");
+            self.panels.push(panel(coordinate.id, name, (measures[0], unit.to_owned()), lines, guides, least));
+            let lines = moving.iter().map(|(k, _)| line(&self.curves, *k, 3 + c, 0.0, 1.0)).collect();
+            let least = if c == PHI { 2e-3 } else { 1e-4 * reach };
+            let unit = (measures[1], "rad/s".to_owned());
             self.panels.push(panel(coordinate.velocity_id, coordinate.velocity_name, unit, lines, Vec::new(), least));
         }
     }
@@ -164,12 +156,11 @@ impl Panels {
         if drawn.is_empty() {
             return;
         }
-        let (unit, factor) = length_unit(scenery.display.length, largest(drawn.iter().flat_map(|(.., values)| values)));
         let span = scenery.beams.iter().fold(0.0, |longest: f64, beam| beam.span.max(longest));
         let only_middle = drawn.len() == 1 && !several && drawn[0].0.starts_with("midspan");
         let lines = drawn.into_iter().enumerate().map(|(number, (label, column, _))| {
             let label = if only_middle { String::new() } else { label };
-            Line::of(&self.curves, column, factor, label, number)
+            Line::of(&self.curves, column, 1.0, label, number)
         });
         let lines = lines.collect();
         self.panels.push(TimePanel {
@@ -178,8 +169,9 @@ impl Panels {
             of_contact: None,
             title: if only_middle { "Deflection at midspan w" } else { "Deflection w" }.to_owned(),
             description: "Deflection of the beams over time".to_owned(),
-            unit: unit.to_owned(),
-            least: ROUNDING * 1e-2 * span * factor,
+            measure: Measure::Deflection,
+            unit: String::new(),
+            least: ROUNDING * 1e-2 * span,
             guides: Vec::new(),
             cut: false,
             place: Place::Motion,
@@ -209,11 +201,12 @@ impl Panels {
                     continue;
                 }
                 let most = moving.iter().fold(0.0, |most: f64, (.., largest)| most.max(*largest));
-                let (unit, factor) = match (turns, k) {
-                    (true, 0) => (display.angle.symbol(), display.angle.per_radian()),
-                    (true, _) => ("rad", 1.0),
-                    (false, 2) => ("m", 1.0),
-                    (false, _) => length_unit(display.length, most),
+                let (measure, unit, factor) = match (turns, k) {
+                    (true, 0) => (Measure::Own, display.angle.symbol(), display.angle.per_radian()),
+                    (true, _) => (Measure::Own, "rad", 1.0),
+                    (false, 0) => (Measure::Position, "", 1.0),
+                    (false, 1) => (Measure::Velocity, "", 1.0),
+                    (false, _) => (Measure::Own, "m", 1.0),
                 };
                 let line = |(number, driven, column, _): (usize, &Driven, usize, f64)| {
                     let axis = COORDINATES[driven.component].symbol;
@@ -231,6 +224,7 @@ impl Panels {
                     note: None,
                     of_contact: None,
                     title,
+                    measure,
                     unit: format!("{unit}{}", ["", "/s", "/s²"][k]),
                     least: ROUNDING * most * factor,
                     guides: Vec::new(),
@@ -286,7 +280,8 @@ impl Panels {
                 ([display.angle.symbol(), "rad"], [display.angle.per_radian(), 1.0])
             } else {
                 let most = |of: usize| largest(orbits.iter().flat_map(|(_, points)| points).map(|point| &point[of]));
-                let [(x, a), (v, b)] = [1, 2].map(|of| length_unit(display.length, most(of)));
+                let [(x, a), (v, b)] = [(Measure::Position, 1), (Measure::Velocity, 2)]
+                    .map(|(measure, of)| self.units.unit(measure, most(of)));
                 ([x, v], [a, b])
             };
             let line = |(k, points): (usize, Vec<Point>)| {

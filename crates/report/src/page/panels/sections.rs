@@ -1,0 +1,88 @@
+//! Plots of what beams bear.
+
+use super::{Line, Measure, Panels, Place, TimePanel};
+use crate::page::content::{holds, largest};
+use crate::page::means;
+use crate::page::recorder::PageRecorder;
+use crate::sections::Kind;
+use crate::with_digits;
+
+impl Panels {
+    /// What beams bear at their probes and supports.
+    pub(super) fn sections(&mut self, recorder: &PageRecorder) {
+        let columns: Vec<_> = recorder.sections.iter().zip(recorder.first_section()..).collect();
+        let values: Vec<Vec<f64>> = columns.iter().map(|(_, k)| self.curves.curve(*k)).collect();
+        // Of a recorder on its own, which has seen no section forces, there is nothing to draw or to tell.
+        if !values.iter().flatten().any(|value| value.is_finite()) {
+            return;
+        }
+        let most = |kinds: &[Kind]| {
+            let of_kind = columns.iter().zip(&values).filter(|((column, _), _)| kinds.contains(&column.kind));
+            largest(of_kind.flat_map(|(_, values)| values))
+        };
+        let span = recorder.scenery.beams.iter().fold(0.0, |longest: f64, beam| beam.span.max(longest));
+        let moment = most(&[Kind::Moment, Kind::ReactionCouple]);
+        let force = most(&[Kind::Shear, Kind::AxialForce, Kind::Reaction]).max(moment / span);
+        let moment = moment.max(force * span);
+        for (kind, title, of, unit, scale) in [
+            (Kind::Moment, "Bending moment M", "bending moment at", "N m", moment),
+            (Kind::Shear, "Transverse force V", "transverse force at", "N", force),
+            (Kind::Stress, "Largest normal stress", "stress at", "Pa", most(&[Kind::Stress])),
+            (Kind::AxialForce, "Axial force N", "axial force", "N", force),
+            (Kind::Reaction, "Reactions of the supports", "reaction at", "N", force),
+            (Kind::ReactionCouple, "Couples of the supports", "couple of the support at", "N m", moment),
+        ] {
+            let mut drawn = Vec::new();
+            let of_kind = columns.iter().zip(&values).filter(|((column, _), _)| column.kind == kind);
+            for (number, ((column, k), values)) in of_kind.enumerate() {
+                let label = recorder.section_label(column);
+                if holds(largest(values), scale) {
+                    drawn.push((*k, label, number, values));
+                } else {
+                    self.leave_out(of, (!label.is_empty()).then_some((label, "places")), largest(values), unit);
+                }
+            }
+            if drawn.is_empty() {
+                continue;
+            }
+            let most = largest(drawn.iter().flat_map(|(.., values)| *values));
+            // Stress is known in megapascals.
+            let (measure, unit, factor) = match kind {
+                Kind::Stress => (Measure::Own, "MPa", 1e-6),
+                Kind::Moment | Kind::ReactionCouple => (Measure::Moment, "", 1.0),
+                _ => (Measure::Force, "", 1.0),
+            };
+            let window = means::window(&self.curves);
+            let (mut lines, mut over) = (Vec::new(), Vec::new());
+            for (column, label, number, _) in drawn {
+                // A stress is a size, without a sign: the mean of what alternates would be no force that carries.
+                let mean = if kind == Kind::Stress { None } else { means::ringing(&self.curves, column, window) };
+                let is_raw = mean.is_some();
+                let name = if is_raw { String::new() } else { label.clone() };
+                lines.push(Line { is_raw, ..Line::of(&self.curves, column, factor, name, number) });
+                over.extend(mean.map(|y| Line { label, number, y, is_raw: false, of: None }));
+            }
+            let note = (!over.is_empty())
+                .then(|| format!("pale: all steps; strong: means over {}", with_digits(window, "s", 3)));
+            lines.extend(over);
+            // What is pale stays behind all else.
+            lines.sort_by_key(|line| if line.is_raw { (0, 0) } else { (1, line.number) });
+            let id =
+                serde_json::to_value(kind).ok().and_then(|word| word.as_str().map(str::to_owned)).unwrap_or_default();
+            self.panels.push(TimePanel {
+                id: format!("section-{id}"),
+                note,
+                of_contact: None,
+                title: title.to_owned(),
+                description: format!("{title} over time"),
+                measure,
+                unit: unit.to_owned(),
+                least: 1e-6 * most * factor,
+                guides: Vec::new(),
+                cut: true,
+                place: Place::Forces,
+                lines,
+            });
+        }
+    }
+}

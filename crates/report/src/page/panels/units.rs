@@ -1,0 +1,247 @@
+//! The units of the page: one for each kind of quantity, where its values lie so near to each other that one suits all.
+
+use super::TimePanel;
+use crate::page::content::largest;
+use crate::page::curves::ForceCurve;
+use crate::page::recorder::PageRecorder;
+use crate::page::scenery::ContactDrawn;
+use teeter_scenario::scene::LengthUnit;
+
+/// A unit's prefix, or a unit of length, with its number to the SI unit.
+pub(crate) type Unit = (&'static str, f64);
+
+/// Kinds of quantities that have one unit each, where that suits them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Measure {
+    /// Where bodies and ground are.
+    Position,
+    /// The rates of these.
+    Velocity,
+    /// What is small beside bodies: deflections of beams, slip.
+    Deflection,
+    Force,
+    Moment,
+    Energy,
+    /// Those of a plot that are in their unit already.
+    Own,
+}
+
+impl Measure {
+    fn is_length(self) -> bool {
+        matches!(self, Self::Position | Self::Velocity | Self::Deflection)
+    }
+
+    /// What follows the prefix or the unit of length.
+    fn base(self) -> &'static str {
+        match self {
+            Self::Velocity => "/s",
+            Self::Force => "N",
+            Self::Moment => "N m",
+            Self::Energy => "J",
+            Self::Position | Self::Deflection | Self::Own => "",
+        }
+    }
+}
+
+/// The units that the quantities of a page have come to.
+#[derive(Debug, Clone)]
+pub(crate) struct Units {
+    own: LengthUnit,
+    chosen: Vec<(Measure, f64, Unit)>,
+}
+
+/// Values that are farther apart than this have units of their own.
+const WITHIN: f64 = 1e4;
+
+/// Numbers below this are small for an axis.
+const SMALL: f64 = 0.1;
+
+/// Numbers of a length as large as this are in a larger unit than the scene's.
+const LARGE: f64 = 1e4;
+
+impl Units {
+    /// Units for quantities by their sizes, in SI units, in a scene with this unit of length.
+    pub(super) fn of(own: LengthUnit, sizes: &[(Measure, f64)]) -> Self {
+        let mut units = Self { own, chosen: Vec::new() };
+        let mut left: Vec<(Measure, f64)> = sizes.iter().copied().filter(|(_, size)| *size > 0.0).collect();
+        left.sort_by(|a, b| b.1.total_cmp(&a.1));
+        while let Some(&(measure, most)) = left.first() {
+            let (near, far) =
+                left.into_iter().partition::<Vec<_>, _>(|(of, size)| *of == measure && size * WITHIN >= most);
+            let least = near.last().map_or(most, |(_, size)| *size);
+            let unit = units.suiting(measure, most, least);
+            units.chosen.extend(near.into_iter().map(|(_, size)| (measure, size, unit)));
+            left = far;
+        }
+        units
+    }
+
+    /// The unit that makes handy numbers of both.
+    fn suiting(&self, measure: Measure, most: f64, least: f64) -> Unit {
+        let alone = self.alone(measure, most);
+        if least * alone.1 >= SMALL {
+            return alone;
+        }
+        let for_least = self.alone(measure, least);
+        if most * for_least.1 < LARGE { for_least } else { self.alone(measure, (most * least).sqrt()) }
+    }
+
+    fn alone(&self, measure: Measure, size: f64) -> Unit {
+        if measure.is_length() { length_unit(self.own, size) } else { prefix(size) }
+    }
+
+    /// The unit of a quantity of this size, in SI units: that of the nearest of its kind, unless that is too far from it or
+    /// makes no readable number.
+    pub(crate) fn unit(&self, measure: Measure, size: f64) -> Unit {
+        let apart = |other: f64| (other / size).ln().abs();
+        let same = self.chosen.iter().filter(|(of, ..)| *of == measure && size > 0.0);
+        let nearest = same.min_by(|a, b| apart(a.1).total_cmp(&apart(b.1)));
+        let suits = |(_, factor): Unit| (0.1 * SMALL..10.0 * LARGE).contains(&(size * factor));
+        let near = nearest.filter(|(_, other, unit)| apart(*other) <= WITHIN.ln() && suits(*unit));
+        near.map_or_else(|| self.alone(measure, size), |(.., unit)| *unit)
+    }
+}
+
+impl TimePanel {
+    /// Where its axis ends because peaks dwarf the rest, or what rings its mean, and the largest of them.
+    pub(crate) fn cut_at(&self) -> Option<(f64, f64)> {
+        let sizes = || self.lines.iter().flat_map(|line| &line.y).map(|y| y.abs()).filter(|y| y.is_finite());
+        let all = largest(self.lines.iter().flat_map(|line| &line.y));
+        let means = largest(self.lines.iter().filter(|line| !line.is_raw).flat_map(|line| &line.y));
+        if self.lines.iter().any(|line| line.is_raw) && all > RINGS * means {
+            return Some((0.5 * RINGS * means, all));
+        }
+        cut_at(sizes().filter(|y| *y > self.least).collect()).filter(|_| self.cut)
+    }
+
+    /// How large its values are that are seen.
+    pub(super) fn size(&self) -> f64 {
+        self.cut_at().map_or_else(|| largest(self.lines.iter().flat_map(|line| &line.y)), |(limit, _)| limit)
+    }
+
+    /// Turns its values from SI units into this one.
+    pub(super) fn show_in(&mut self, (name, factor): Unit) {
+        self.unit = format!("{name}{}", self.measure.base());
+        self.least *= factor;
+        for line in &mut self.lines {
+            line.y.iter_mut().for_each(|y| *y *= factor);
+            if let Some(source) = &mut line.of {
+                source.factor *= factor;
+            }
+        }
+    }
+}
+
+/// The unit of lengths on an axis, with its number to a metre: the scene's, unless it makes numbers too small or too large.
+pub(crate) fn length_unit(of: LengthUnit, largest: f64) -> Unit {
+    let own = (of.word(), of.per_metre());
+    if largest * own.1 >= LARGE {
+        return if largest >= LARGE { ("km", 1e-3) } else { ("m", 1.0) };
+    }
+    let units = [own, ("mm", 1e3), ("µm", 1e6), ("nm", 1e9)];
+    let fits = |(_, factor): &&Unit| largest == 0.0 || largest * factor >= 0.5;
+    units.iter().find(fits).copied().unwrap_or(("nm", 1e9))
+}
+
+/// The prefix of a unit, with its factor, that makes the largest of some values a handy number.
+pub(crate) fn prefix(largest: f64) -> Unit {
+    let large = [("G", 1e-9), ("M", 1e-6), ("k", 1e-3), ("", 1.0)];
+    let small = [("m", 1e3), ("µ", 1e6), ("n", 1e9), ("p", 1e12), ("f", 1e15), ("a", 1e18), ("z", 1e21)];
+    large.into_iter().chain(small).find(|(_, factor)| largest * factor >= 0.5).unwrap_or(("", 1.0))
+}
+
+/// The unit of a time axis as long as `duration`, with its number to a second.
+pub(crate) fn time_unit(duration: f64) -> Unit {
+    let units = [("s", 1.0), ("ms", 1e3), ("µs", 1e6)];
+    // 0.1 s is still read well in seconds.
+    units.into_iter().find(|(_, factor)| duration * factor >= 0.099).unwrap_or(("ns", 1e9))
+}
+
+/// The largest of forces as they are seen: where the peaks of impacts dwarf all else and are cut, the size at which they are.
+fn seen<'a>(forces: impl Iterator<Item = &'a f64>) -> f64 {
+    let mut sizes: Vec<f64> = forces.map(|f| f.abs()).filter(|f| f.is_finite()).collect();
+    let most = largest(&sizes);
+    sizes.retain(|f| *f > LEAST_FORCE * most);
+    cut_at(sizes).map_or(most, |(limit, _)| limit)
+}
+
+/// How large normal and tangential forces of each contact are, as they are seen, N.
+pub(super) fn contact_sizes(recorder: &PageRecorder, forces: &[Option<ForceCurve>]) -> Vec<[f64; 2]> {
+    // Peaks of springs are forces that act, and are shown whole.
+    let has_springs = recorder.scenery.contacts.iter().any(|contact| contact.has_duration);
+    let seen = |forces: &mut dyn Iterator<Item = &f64>| if has_springs { largest(forces) } else { seen(forces) };
+    let of = |contact: &ContactDrawn| {
+        let own = || forces[contact.first..contact.first + contact.points.len()].iter().flatten();
+        [seen(&mut own().flat_map(|forces| &forces.normal)), seen(&mut own().flat_map(|forces| &forces.tangential))]
+    };
+    recorder.scenery.contacts.iter().map(of).collect()
+}
+
+/// A force this many times the one that nine of ten samples stay below is a peak of an impact, whose height is that of
+/// the sample's length; the axis then ends at half as much, for the rest to be legible.
+const PEAK: f64 = 6.0;
+
+/// What rings by this many times the largest mean would make all means one line; the axis then ends at half as much.
+const RINGS: f64 = 3.0;
+
+/// Where an axis of forces of these sizes ends because peaks dwarf the rest, and the largest of them.
+pub(crate) fn cut_at(mut sizes: Vec<f64>) -> Option<(f64, f64)> {
+    sizes.sort_by(f64::total_cmp);
+    let (&usual, &largest) = (sizes.get(sizes.len() * 9 / 10)?, sizes.last()?);
+    (largest > PEAK * usual).then_some((0.5 * PEAK * usual, largest))
+}
+
+/// A force below this part of the largest is none.
+const LEAST_FORCE: f64 = 1e-6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_in_the_unit_of_the_scene_unless_too_small_for_it() {
+        assert_eq!(length_unit(LengthUnit::Centimetre, 0.18), ("cm", 100.0));
+        assert_eq!(length_unit(LengthUnit::Centimetre, 1.2e-3), ("mm", 1e3));
+        assert_eq!(length_unit(LengthUnit::Metre, 3e-7), ("nm", 1e9));
+        assert_eq!(length_unit(LengthUnit::Millimetre, 0.0), ("mm", 1e3));
+        // A block that flies off, in a scene of centimetres.
+        assert_eq!(length_unit(LengthUnit::Centimetre, 99.0), ("cm", 100.0));
+        assert_eq!(length_unit(LengthUnit::Centimetre, 6e3), ("m", 1.0));
+        assert_eq!(length_unit(LengthUnit::Metre, 6e4), ("km", 1e-3));
+    }
+
+    #[test]
+    fn quantities_of_a_kind_have_one_unit_unless_they_are_far_apart() {
+        use Measure::{Deflection, Energy, Force, Moment, Position};
+        let of = |sizes: &[(Measure, f64)]| {
+            let units = Units::of(LengthUnit::Centimetre, sizes);
+            sizes.iter().map(|(measure, size)| units.unit(*measure, *size).0).collect::<Vec<_>>()
+        };
+        // A block's weight, and the reactions of the beam that it stands on, with their impacts.
+        assert_eq!(of(&[(Force, 350.0), (Force, 1.05e3), (Moment, 60.0)]), ["k", "k", ""]);
+        assert_eq!(of(&[(Force, 57.0), (Force, 1.05e3)]), ["", ""], "0.057 kN would be small");
+        assert_eq!(of(&[(Energy, 0.188), (Energy, 2.2)]), ["", ""]);
+        assert_eq!(of(&[(Force, 14.0), (Force, 2e-4)]), ["", "µ"], "more than 10⁴ apart");
+        assert_eq!(of(&[(Deflection, 3e-3), (Deflection, 0.13)]), ["cm", "cm"]);
+        assert_eq!(of(&[(Deflection, 9e-4), (Deflection, 0.13)]), ["mm", "mm"]);
+        assert_eq!(of(&[(Position, 2e-3), (Position, 0.45), (Deflection, 2e-3)]), ["cm", "cm", "mm"]);
+        // What was not among those that chose.
+        let units = Units::of(LengthUnit::Metre, &[(Force, 5e3), (Force, 300.0)]);
+        assert_eq!([2e3, 200.0, 0.1].map(|size| units.unit(Force, size).0), ["k", "k", "m"]);
+    }
+
+    #[test]
+    fn peaks_that_are_cut_dont_set_the_unit() {
+        let mut forces = vec![14.0; 99];
+        forces.push(1820.0);
+        assert_eq!((seen(forces.iter()), prefix(seen(forces.iter())).0), (42.0, ""));
+        assert_eq!(seen([14.0, 20.0, 0.0].iter()), 20.0);
+        assert_eq!(seen([].iter()), 0.0);
+    }
+
+    #[test]
+    fn any_size_has_a_unit_that_suits() {
+        assert_eq!([4e9, 6.8e8, 2e4, 400.0, 0.2, 4e-21].map(|x| prefix(x).0), ["G", "G", "k", "", "m", "z"]);
+        assert_eq!([3600.0, 0.1, 1e-3, 3e-6, 1e-9].map(|t| time_unit(t).0), ["s", "s", "ms", "µs", "ns"]);
+    }
+}
