@@ -58,6 +58,18 @@ fn a_study_writes_its_files_and_says_the_same_again() {
     assert_eq!((&a["error_bar"], &a["horizon"], &a["candidates"]), (&b["error_bar"], &b["horizon"], &b["candidates"]));
     assert!(a["error_bar"]["accuracy"].as_f64().unwrap() > 0.0);
 
+    // Each cell of its table has the heading of its column, for windows so narrow that rows are lists; no column is all dashes.
+    let page = std::fs::read_to_string(folder.join(out).join("tradeoff.html")).unwrap();
+    let (_, table) = page.split_once("aria-labelledby=\"candidates-title\"><table>").unwrap();
+    let (table, _) = table.split_once("</table>").unwrap();
+    let headings: Vec<&str> =
+        table.split("<th scope=\"col\">").skip(1).map(|cell| cell.split_once('<').unwrap().0).collect();
+    assert!(headings.starts_with(&["Stage"]) && headings.ends_with(&["CPU time", "By counted work"]), "{headings:?}");
+    for heading in headings {
+        let cells: Vec<&str> = table.split(&format!("<td data-of=\"{heading}\">")).skip(1).collect();
+        assert!(cells.iter().any(|cell| !cell.starts_with('–')), "{heading}");
+    }
+
     // What is advised runs as it stands.
     let set = a["recommendations"][0]["set"].as_object().unwrap();
     let sets: Vec<String> = set.iter().map(|(key, value)| format!("{key}={}", value.as_str().unwrap())).collect();

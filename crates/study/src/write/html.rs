@@ -5,7 +5,7 @@ use teeter_plot::escaped;
 use teeter_report::unbroken;
 
 /// Characters beside each other that a table has room for on a telephone.
-const NARROW: usize = 44;
+const NARROW: usize = 42;
 
 /// Of the first column, whose words may be broken, more characters are not counted.
 const FIRST: usize = 10;

@@ -20,6 +20,8 @@ tbody th.setting { text-align: left; white-space: normal; padding-top: .6rem; }\
 th.setting > div { position: sticky; left: 0; width: min(100%, calc(100vw - 2.5rem)); }\n\
 tbody.on th.setting, tbody.on td { font-weight: 600; }\n\
 th.setting small { font-weight: 400; }\n\
+@media (max-width: 520px) { .cards th.setting { display: block; } .cards td:first-child { font-weight: inherit; } \
+ .cards tbody tr + tr { border-top: 0; padding-top: 0; } .cards table, .cards tbody { display: block; } }\n\
 @media print { .panel { break-inside: auto; } figure { max-width: 15cm; } th.setting > div { width: auto; } table { font-size: 7pt; } th, td { padding-right: .3rem; } }\n";
 
 /// The page. `scene` are the words that name the scene after `teeter run`, for the commands that
@@ -118,18 +120,20 @@ impl Page<'_> {
     fn checks(&self, html: &mut String) {
         html.push_str(
             "<section id=\"checks\" class=\"panel\" aria-labelledby=\"checks-title\"><details><summary id=\"checks-title\">Accuracy of the reference</summary>\n\
-             <div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"checks-title\"><table>\n",
+             <div class=\"scroll cards\" tabindex=\"0\" role=\"group\" aria-labelledby=\"checks-title\"><table>\n",
         );
-        let columns = header(html, &["Agrees until"], &[]);
-        for check in &self.study.reference.checks {
+        let checks = &self.study.reference.checks;
+        let quantities = measured(checks.iter().map(|check| &check.errors));
+        let columns = header(html, &[AGREES], &quantities, &[]);
+        for check in checks {
             let _ = write!(
                 html,
-                "<tbody><tr><th scope=\"rowgroup\" colspan=\"{columns}\" class=\"setting\"><div>{}: <code>{}</code></div></th></tr>\n<tr><td>{} s</td>",
+                "<tbody><tr><th scope=\"rowgroup\" colspan=\"{columns}\" class=\"setting\"><div>{}: <code>{}</code></div></th></tr>\n<tr><td data-of=\"{AGREES}\">{} s</td>",
                 escaped(&capitalised(check.what)),
                 command_words(&check.setting.to_string()),
                 short(check.agrees_until)
             );
-            errors(html, &check.errors);
+            errors(html, &quantities, &check.errors);
             html.push_str("</tr></tbody>\n");
         }
         html.push_str("</table></div></details></section>\n");
@@ -142,10 +146,12 @@ impl Page<'_> {
             "<section id=\"candidates\" class=\"panel\" aria-labelledby=\"candidates-title\"><details><summary id=\"candidates-title\">All settings, with all errors</summary>\n\
              <p class=\"note\">Bold: on the Pareto front. Of the later stages, those that were near it; tradeoff.csv has all. A setting that \
              <code>check</code> or <code>run</code> warns of is not advised. Accuracies below {} can’t be measured.</p>\n\
-             <div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"candidates-title\"><table>\n",
+             <div class=\"scroll cards\" tabindex=\"0\" role=\"group\" aria-labelledby=\"candidates-title\"><table>\n",
             percent(study.bar())
         );
-        let columns = header(html, &["Stage"], &["CPU time", "By counted work"]);
+        let done = study.rows.iter().filter_map(|row| row.result.as_ref().ok());
+        let quantities = measured(done.map(|done| &done.errors));
+        let columns = header(html, &[STAGE], &quantities, &TIMES);
         // Only the informative ones of hundreds; the table in the file has all.
         let shown = |number: usize, row: &Row| {
             row.stage <= 2 || row.cpu.is_some() || row.result.is_err() || study.front.contains(&number)
@@ -155,20 +161,18 @@ impl Page<'_> {
             let warned = row.warned().iter().map(|warned| format!("<br>warned: {}", escaped(&warned.text)));
             let _ = write!(
                 html,
-                "<tbody{class}><tr><th scope=\"rowgroup\" colspan=\"{columns}\" class=\"setting\"><div><code>{}</code><small>{}</small></div></th></tr>\n<tr><td>{}</td>",
+                "<tbody{class}><tr><th scope=\"rowgroup\" colspan=\"{columns}\" class=\"setting\"><div><code>{}</code><small>{}</small></div></th></tr>\n<tr><td data-of=\"{STAGE}\">{}</td>",
                 self.command(row),
                 warned.collect::<String>(),
                 row.stage
             );
             match &row.result {
                 Ok(done) => {
-                    errors(html, &done.errors);
-                    let _ = write!(
-                        html,
-                        "<td>{}</td><td>{}</td>",
-                        row.measured().map_or("–".to_owned(), duration),
-                        duration(done.work.seconds())
-                    );
+                    errors(html, &quantities, &done.errors);
+                    let times = [row.measured().map_or("–".to_owned(), duration), duration(done.work.seconds())];
+                    for (of, time) in TIMES.iter().zip(times) {
+                        let _ = write!(html, "<td data-of=\"{of}\">{time}</td>");
+                    }
                 }
                 Err(failure) => {
                     let _ = write!(
@@ -185,20 +189,32 @@ impl Page<'_> {
     }
 }
 
+/// Headings of columns beside those of the quantities.
+const STAGE: &str = "Stage";
+const AGREES: &str = "Agrees until";
+const TIMES: [&str; 2] = ["CPU time", "By counted work"];
+
+/// The quantities of which any of these errors is known: the others would be columns of dashes.
+fn measured<'a>(all: impl Iterator<Item = &'a crate::Errors>) -> Vec<Quantity> {
+    let all: Vec<_> = all.collect();
+    Quantity::ALL.into_iter().filter(|quantity| all.iter().any(|errors| errors.of(*quantity).is_some())).collect()
+}
+
 /// The head of a table of errors; returns its number of columns.
-fn header(html: &mut String, first: &[&str], last: &[&str]) -> usize {
+fn header(html: &mut String, first: &[&str], quantities: &[Quantity], last: &[&str]) -> usize {
     html.push_str("<thead><tr>");
-    let cells = first.iter().copied().chain(Quantity::ALL.map(Quantity::title)).chain(last.iter().copied());
-    for cell in cells {
+    let titles = quantities.iter().map(|quantity| quantity.title());
+    for cell in first.iter().copied().chain(titles).chain(last.iter().copied()) {
         let _ = write!(html, "<th scope=\"col\">{cell}</th>");
     }
     html.push_str("</tr></thead>\n");
-    first.len() + Quantity::ALL.len() + last.len()
+    first.len() + quantities.len() + last.len()
 }
 
-fn errors(html: &mut String, errors: &crate::Errors) {
-    for quantity in Quantity::ALL {
-        let text = errors.of(quantity).map_or("–".to_owned(), short);
-        let _ = write!(html, "<td>{}</td>", text.replace('-', "\u{2212}"));
+/// Cells with errors, each with its column's heading for narrow windows, where a row is a list.
+fn errors(html: &mut String, quantities: &[Quantity], errors: &crate::Errors) {
+    for quantity in quantities {
+        let text = errors.of(*quantity).map_or("–".to_owned(), short);
+        let _ = write!(html, "<td data-of=\"{}\">{}</td>", quantity.title(), text.replace('-', "\u{2212}"));
     }
 }
