@@ -744,9 +744,9 @@ fn what_moves_at_the_end_says_how() {
 
 #[test]
 fn a_plate_that_a_beam_lifts_by_micrometres_does_not_bounce() {
-    let text = "[time]\nend = '0.5 s'\nstep = '100 us'\n[material.a]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n\
-        [beam.t]\nmaterial = 'a'\nspan = '1 m'\nwidth = '5 cm'\nthickness = '5 mm'\nelements = 20\n\
-        damping_ratio = { mode = 1, ratio = 0.01 }\n[block.plate]\nmaterial = 'a'\nwidth = '10 cm'\nheight = '1 cm'\n\
+    let text = "[time]\nend = '0.5 s'\nstep = '100 us'\n[material.steel]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n\
+        [beam.t]\nmaterial = 'steel'\nspan = '1 m'\nwidth = '5 cm'\nthickness = '5 mm'\nelements = 20\n\
+        damping_ratio = { mode = 1, ratio = 0.01 }\n[block.plate]\nmaterial = 'steel'\nwidth = '10 cm'\nheight = '1 cm'\n\
         depth = '5 cm'\nposition = ['50 cm', '1.5 cm']\n[contact.f]\nbetween = ['plate', 't']\nfriction = 0.3\n";
     // By tens of micrometres in the last 0.1 s, and by 0.16 mm.
     for (restitution, how) in [("0.5", "trembling where it stands"), ("0.9", "bouncing")] {
@@ -757,7 +757,7 @@ fn a_plate_that_a_beam_lifts_by_micrometres_does_not_bounce() {
 
 #[test]
 fn a_tilted_block_that_came_down_and_slides_on_is_told_as_sliding() {
-    let text = "[time]\nend = '1.2 s'\nstep = '1 ms'\n[ground]\nincline = '25 deg'\n[material.a]\ndensity = '2500 kg/m^3'\n\
+    let text = "[time]\nend = '1.2 s'\nstep = '1 ms'\n[ground]\nincline = '25 deg'\n\
         [block.b]\nmaterial = 'a'\nwidth = '10 cm'\nheight = '6 cm'\ndepth = '10 cm'\non = 'ground'\nat = '0 m'\ntilt = '0.532 deg'\n\
         [contact.f]\nbetween = ['b', 'ground']\nfriction = 0.3\n";
     let ran = scene("tilted-slides", text);

@@ -36,9 +36,10 @@ const plots = (() => {
     const legend = htmlElement("div", isMany ? "legend many" : "legend", undefined, isMany ? folded(keys, panel, row) : row);
     for (const series of keys) {
       const key = htmlElement("span", series.label ? "key" : "key bare", undefined, legend);
-      const swatch = svgElement("svg", { viewBox: "0 0 18 8", "aria-hidden": "true" }, key);
+      const sample = sampleOf(series);
+      const swatch = svgElement("svg", { viewBox: `0 0 ${sample.width} 8`, style: `width: ${sample.width}px`, "aria-hidden": "true" }, key);
       if (series.upper) svgElement("path", { d: "M0 0h18v8h-18z", class: "area", style: `fill: ${colour(series.index)}; fill-opacity: ${series.inner ? 0.45 : 0.2}` }, swatch);
-      else svgElement("path", { d: "M0 4h18", style: stroke(series), "stroke-width": 2 }, swatch);
+      else svgElement("path", { d: `M0 4h${sample.width}`, style: `${stroke(series)}; ${sample.style}`, "stroke-width": 2 }, swatch);
       if (series.label) key.append(series.label);
       series.readout = htmlElement("b", "", "", key);
     }
@@ -86,6 +87,18 @@ const plots = (() => {
   /** The dashes of a line on others, as in the figures: all have the same period, each half the dashes of the one below; of more than four, equal parts. */
   const over = (lines, most) => (most <= 3 ? `${10 / 2 ** lines} ${10 - 10 / 2 ** lines}` : `${4 * (most + 1 - lines)} ${4 * lines}`);
   const stroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${series.over ? over(series.over, series.mostOver) : dash(series.index)}; fill: none`;
+
+  /** The sample of a line in a legend: of a line on others a whole period, from the middle of a dash to that of the next, as its gap would not be seen at an
+      end; longer periods to a smaller scale. */
+  function sampleOf(series) {
+    const [usual, longest] = [18, 56];
+    if (!series.over) return { width: usual, style: "" };
+    const dashes = over(series.over, series.mostOver).split(" ").map(Number);
+    const period = dashes[0] + dashes[1];
+    const width = Math.min(longest, Math.max(usual, period));
+    const scale = Math.min(1, width / period);
+    return { width, style: `stroke-dasharray: ${dashes.map((length) => scale * length).join(" ")}; stroke-dashoffset: ${0.5 * scale * dashes[0]}` };
+  }
 
   /** The largest value of a panel, by which its readouts have their decimals. */
   const largestOf = ({ series, cut }) => Math.min(cut?.limit ?? Infinity, series.reduce((most, { y, upper }) => [y, upper ?? []].reduce((largest, values) =>
@@ -348,6 +361,9 @@ const plots = (() => {
 
   function readOut(t) {
     for (const panel of panels.filter((one) => !one.portrait)) {
+      // What stays behind a mean has no place in the legend, but for scripts.
+      const pale = panel.series.filter(({ raw }) => raw).map((series) => readout(read(series, t), panel.most, 4));
+      if (pale.length) panel.element.dataset.raw = pale.join(" ");
       for (const series of panel.series.filter(({ raw }) => !raw)) {
         const shown = (value) => readout(value !== null && Math.abs(value) < 1e-2 * panel.least ? 0 : value, panel.most, series.upper ? 3 : 4);
         const value = shown(read(series, t));
