@@ -294,7 +294,7 @@ impl Panel {
         for (k, line) in series.iter().enumerate().filter(|(_, series)| series.drawn == Drawn::Line) {
             let path = line_path(line.points(), |x| frame.px(x), py);
             let stroke = stroke(line.number_at(k), line.dash, theme);
-            let weight = if line.faint { "stroke-width=\".5\" stroke-opacity=\".45\"" } else { "stroke-width=\"1.1\"" };
+            let weight = if line.faint { "stroke-width=\".5\" stroke-opacity=\".35\"" } else { "stroke-width=\"1.1\"" };
             let _ = writeln!(svg, "<path d=\"{path}\" {stroke} {weight}/>");
         }
         svg.push_str("</g>\n");
