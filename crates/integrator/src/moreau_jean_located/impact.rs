@@ -7,6 +7,7 @@ use crate::{
     ContactError, Keep, Mismatch, Model, Over, PhaseEnd, PhaseKind, Responses, Rule, State, StepError, Vector,
     Workspace,
 };
+use std::ops::Add;
 use teeter_detect::{Anchor, BodyId, Candidate};
 
 /// Contacts with a gap of up to so many tolerances touch.
@@ -15,39 +16,80 @@ const TOUCHING: f64 = 10.0;
 /// The time of an impact is uncertain by no more than this part of the scheme's step: a larger gap of a closed contact is not drift.
 const HIDDEN: f64 = 0.01;
 
-/// A contact that strikes at a time that is uncertain, by what closed contacts of its bodies have drifted from their surfaces.
+/// A contact that strikes, and by how much its time is uncertain: by what closed contacts of its bodies have drifted from their surfaces.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strike<const D: usize> {
     sides: [Anchor<D>; 2],
     /// Its normal velocity, m/s: below 0.
     rate: f64,
-    /// How far its bodies may be off, m.
-    shift: f64,
-    /// By what angle they may be off, rad.
-    turn: f64,
+    drift: Drift,
 }
 
 impl<const D: usize> Strike<D> {
-    /// By how much the time (s) is uncertain at which another point of one of its bodies strikes, in comparison.
-    fn uncertainty(&self, side: &Anchor<D>) -> Option<f64> {
-        let own = self.sides.iter().find(|own| own.body == side.body)?;
-        Some((self.shift + self.turn * (side.point - own.point).norm()) / -self.rate)
+    /// By how much the time (s) is uncertain at which another contact with these sides strikes, in comparison.
+    fn uncertainty(&self, sides: &[Anchor<D>; 2]) -> f64 {
+        let lever = |side: &Anchor<D>| {
+            let own = self.sides.iter().find(|own| own.body == side.body)?;
+            Some((side.point - own.point).norm())
+        };
+        let lever = sides.iter().filter_map(lever).fold(0.0, f64::max);
+        (self.drift.shift + self.drift.turn * lever) / -self.rate
     }
 }
 
-/// How far (m) a body's closed contacts have drifted from their surfaces, and by what angle (rad) they may have turned it: the spread of
-/// their gaps over that of their points.
-fn drift<const D: usize>(body: BodyId, closed: &[Candidate<D>]) -> (f64, f64) {
-    let of_body =
-        || closed.iter().filter_map(|of| of.sides.iter().find(|side| side.body == body).map(|side| (of, side)));
-    let Some((_, first)) = of_body().next() else { return (0.0, 0.0) };
-    let distance = |from: &Anchor<D>, to: &Anchor<D>| (to.point - from.point).norm();
-    let far = of_body().map(|(_, side)| side).max_by(|a, b| distance(first, a).total_cmp(&distance(first, b)));
-    let spread = of_body().map(|(_, side)| distance(far.unwrap_or(first), side)).fold(0.0, f64::max);
-    let gaps = || of_body().map(|(of, _)| of.gap);
-    let (least, most) = (gaps().fold(f64::INFINITY, f64::min), gaps().fold(f64::NEG_INFINITY, f64::max));
-    let turn = if spread > 0.0 { (most - least) / spread } else { 0.0 };
-    (least.abs().max(most.abs()), turn)
+/// How far a body may be off its place.
+#[derive(Clone, Copy, Debug, Default)]
+struct Drift {
+    /// m.
+    shift: f64,
+    /// By what angle, rad.
+    turn: f64,
+}
+
+impl Drift {
+    /// What a body's closed contacts have drifted from their surfaces: their largest gap, and the spread of their gaps over that of their
+    /// points.
+    fn at<const D: usize>(model: &Model<D>, body: BodyId, closed: &[Candidate<D>]) -> Self {
+        let of_body = || contacts_of(model, body, closed);
+        let Some((_, first)) = of_body().next() else { return Self::default() };
+        let distance = |from: &Anchor<D>, to: &Anchor<D>| (to.point - from.point).norm();
+        let far = of_body().map(|(_, side)| side).max_by(|a, b| distance(first, a).total_cmp(&distance(first, b)));
+        let spread = of_body().map(|(_, side)| distance(far.unwrap_or(first), side)).fold(0.0, f64::max);
+        let gaps = || of_body().map(|(of, _)| of.gap);
+        let (least, most) = (gaps().fold(f64::INFINITY, f64::min), gaps().fold(f64::NEG_INFINITY, f64::max));
+        let turn = if spread > 0.0 { (most - least) / spread } else { 0.0 };
+        Self { shift: least.abs().max(most.abs()), turn }
+    }
+
+    /// The same with that of the body that has drifted most among those that it stands on, or that stand on it.
+    fn of<const D: usize>(model: &Model<D>, body: BodyId, closed: &[Candidate<D>]) -> Self {
+        let neighbours = contacts_of(model, body, closed).flat_map(|(of, _)| of.sides.map(|side| side.body));
+        let moving = neighbours.filter(|other| *other != body && model.moves(*other));
+        let most = moving.map(|other| Self::at(model, other, closed)).fold(Self::default(), Self::max);
+        Self::at(model, body, closed) + most
+    }
+
+    fn max(self, other: Self) -> Self {
+        Self { shift: self.shift.max(other.shift), turn: self.turn.max(other.turn) }
+    }
+}
+
+impl Add for Drift {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { shift: self.shift + other.shift, turn: self.turn + other.turn }
+    }
+}
+
+/// The closed contacts of a body, with its side of each; not those with springs, whose gaps are no drift.
+fn contacts_of<'a, const D: usize>(
+    model: &'a Model<D>,
+    body: BodyId,
+    closed: &'a [Candidate<D>],
+) -> impl Iterator<Item = (&'a Candidate<D>, &'a Anchor<D>)> {
+    let rigid = closed.iter().filter(|of| model.spring(of.law).is_none());
+    rigid.filter_map(move |of| of.sides.iter().find(|side| side.body == body).map(|side| (of, side)))
 }
 
 impl<const D: usize> MoreauJeanLocated<D> {
@@ -99,10 +141,10 @@ impl<const D: usize> MoreauJeanLocated<D> {
         let touching = TOUCHING * self.tolerance(&from.q);
         work.locate(model, &from.q, &self.step.closed, &mut self.near)?;
         work.detect(model, &from.q, touching)?;
-        self.find_uncertain_strikes(model, from, work)?;
+        self.find_strikes(model, from, work)?;
         if !self.strikes.is_empty() {
-            // Two bodies may approach each other; a beam is not faster than what rocks on it.
-            let reach = 2.0 * HIDDEN * from.dt * self.fastest(model, &from.v);
+            // Two bodies may approach each other, each be off its place; a beam is not faster than what rocks on it.
+            let reach = 4.0 * HIDDEN * from.dt * self.fastest(model, &from.v);
             work.detect(model, &from.q, touching.max(reach))?;
             let (mut candidates, mut kept) = (std::mem::take(&mut work.candidates), 0);
             for k in 0..candidates.len() {
@@ -134,44 +176,68 @@ impl<const D: usize> MoreauJeanLocated<D> {
         closed.try_for_each(add)
     }
 
-    /// Finds the contacts whose time of impact is uncertain: bodies that take part have closed contacts, which have drifted from their
-    /// surfaces.
-    fn find_uncertain_strikes(&mut self, model: &Model<D>, from: &State, work: &Workspace<D>) -> Result<(), Mismatch> {
+    /// Finds the contacts that strike, if any closed contact has drifted from its surface, so that others may seem to come later.
+    fn find_strikes(&mut self, model: &Model<D>, from: &State, work: &Workspace<D>) -> Result<(), Mismatch> {
         self.strikes.clear();
+        let is_off = |closed: &Candidate<D>| closed.gap != 0.0 && model.spring(closed.law).is_none();
+        if !self.near.iter().any(is_off) {
+            return Ok(());
+        }
         let touching = TOUCHING * self.tolerance(&from.q);
         for candidate in &work.candidates {
-            let (mut shift, mut turn) = (0.0_f64, 0.0);
-            for side in candidate.sides.iter().filter(|side| model.moves(side.body)) {
-                let drift = drift(side.body, &self.near);
-                shift = shift.max(drift.0);
-                turn += drift.1;
-            }
-            let is_known = shift == 0.0 || self.step.closed.binary_search(&candidate.id).is_ok();
             // A beam takes each blow by itself.
-            if is_known || self.is_with_elastic(model, &candidate.sides.map(|side| side.body)) {
+            if self.step.closed.binary_search(&candidate.id).is_ok()
+                || self.is_with_elastic(model, &candidate.sides.map(|side| side.body))
+            {
                 continue;
             }
             let rate = rate_at(&mut self.one, model, &from.q, candidate, &from.v)?;
             if leaves(-rate, || self.one.speed(0, &from.v)) {
-                self.strikes.push(Strike { sides: candidate.sides, rate, shift: shift.max(touching), turn });
+                let mut drift = self.drift_of(model, candidate);
+                if drift.shift > 0.0 {
+                    drift.shift = drift.shift.max(touching);
+                }
+                self.strikes.push(Strike { sides: candidate.sides, rate, drift });
             }
         }
         Ok(())
     }
 
-    /// Whether an open contact would touch within the time by which an impact of one of its bodies is uncertain: it strikes in the same
-    /// impact.
+    /// What both bodies of a contact have drifted.
+    fn drift_of(&self, model: &Model<D>, contact: &Candidate<D>) -> Drift {
+        let moving = contact.sides.iter().filter(|side| model.moves(side.body));
+        moving.map(|side| Drift::of(model, side.body, &self.near)).fold(Drift::default(), |sum, of| sum + of)
+    }
+
+    /// Whether a contact that doesn't touch takes part in the impact: what its bodies have drifted may be all of its gap, or it would touch
+    /// within the time by which the impact is uncertain.
     ///
     /// Points on one line under a base land together, and so do the corners of a side that meets a wall flush. But where the pivot has sunk
     /// in by some nanometres, the points nearer to it would strike first, and take part of the blow; where a block has come to rest on one
-    /// corner deeper than on the other, one corner of its side would be first.
+    /// corner deeper than on the other, one corner of its side would be first, and one that lies against a wall would not.
     fn strikes_along(&mut self, model: &Model<D>, from: &State, candidate: &Candidate<D>) -> Result<bool, Mismatch> {
+        if self.is_with_elastic(model, &candidate.sides.map(|side| side.body)) {
+            return Ok(false);
+        }
         // More is not drift.
         let longest = HIDDEN * from.dt;
-        let moving = || candidate.sides.iter().filter(|side| model.moves(side.body));
-        let times = self.strikes.iter().flat_map(|strike| moving().filter_map(|side| strike.uncertainty(side)));
+        let fastest = self.strikes.iter().map(|strike| -strike.rate).fold(0.0, f64::max);
+        let times = self.strikes.iter().map(|strike| strike.uncertainty(&candidate.sides));
         let time = times.filter(|time| *time <= longest).fold(0.0, f64::max);
-        Ok(time > 0.0 && -rate_at(&mut self.one, model, &from.q, candidate, &from.v)? * time >= candidate.gap)
+        let own = self.off_by(model, candidate);
+        let own = if own <= longest * fastest { own } else { 0.0 };
+        let rate = rate_at(&mut self.one, model, &from.q, candidate, &from.v)?;
+        Ok(candidate.gap <= own + (-rate).max(0.0) * time)
+    }
+
+    /// How much of the gap of a contact may be what its bodies have drifted, m.
+    fn off_by(&self, model: &Model<D>, contact: &Candidate<D>) -> f64 {
+        let of_side = |side: &Anchor<D>| {
+            let levers = contacts_of(model, side.body, &self.near).map(|(_, of)| (side.point - of.point).norm());
+            let drift = Drift::of(model, side.body, &self.near);
+            drift.shift + drift.turn * levers.fold(0.0, f64::max)
+        };
+        contact.sides.iter().filter(|side| model.moves(side.body)).map(of_side).sum()
     }
 
     /// Gives each contact its law.

@@ -2,6 +2,16 @@
 
 use super::located::run;
 
+/// Whether blocks end where they are in an event-driven run, at 1 ms to this accuracy (m).
+fn ends(text: &str, blocks: &[(&str, f64)], accuracy: f64) {
+    let (simulation, seen) = run(text, "1 ms");
+    for (name, end) in blocks {
+        let block = simulation.layout.blocks.iter().find(|block| block.name == *name).unwrap().range.clone();
+        let x = simulation.state.q[block.start];
+        assert!((x - end).abs() < accuracy, "{name}: {x}, {:?}", seen.impacts);
+    }
+}
+
 /// A block that landed keeps a tilt, as one corner has sunk in deeper than the other. Where its side meets a wall flush it doesn't turn:
 /// both corners of the side strike in one impact. The end is that of `event-driven`, which keeps no tilt: after the blow it slides back
 /// and stops.
@@ -31,10 +41,52 @@ fn two_sides_meet_flush_after_a_landing() {
         [block.b1]\ndensity = '2160 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.165 m'\nheight = '0.20 m'\non = 'ground'\nat = '0.38 m'\n\
         tilt = '1.0 deg'\n\
         [contact.c]\nbetween = ['*', '*']\nfriction = 0.1\nlaw = 'newton'\nrestitution = 0.0\n";
-    let (simulation, seen) = run(TEXT, "1 ms");
-    for (name, end) in [("b0", 0.252_774_1), ("b1", 0.486_189_8)] {
-        let block = simulation.layout.blocks.iter().find(|block| block.name == name).unwrap().range.clone();
-        let x = simulation.state.q[block.start];
-        assert!((x - end).abs() < 1e-6, "{name}: {x}, {:?}", seen.impacts);
-    }
+    ends(TEXT, &[("b0", 0.252_774_1), ("b1", 0.486_189_8)], 1e-6);
+}
+
+/// A block that landed lies against a wall without pressing: the corner that its tilt leaves open takes part when another one strikes it,
+/// so that both stop dead.
+#[test]
+fn what_lies_against_a_wall_does_not_hop_when_struck() {
+    const TEXT: &str = "[time]\nend = '0.6 s'\n[ground]\n\
+        [block.b]\ndensity = '2000 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.2 m'\nheight = '0.2 m'\non = 'ground'\nat = '0 m'\n\
+        tilt = '0.2 deg'\nvelocity = ['1 m/s', '0 m/s']\n\
+        [block.a]\ndensity = '2000 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.2 m'\nheight = '0.2 m'\non = 'ground'\nat = '-0.7 m'\n\
+        velocity = ['3 m/s', '0 m/s']\n\
+        [block.wall]\ndensity = '2000 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.2 m'\nheight = '0.6 m'\nfixed = true\n\
+        position = ['0.25 m', '0.3 m']\n\
+        [contact.c]\nbetween = ['?', 'ground']\nfriction = 0.1\n\
+        [contact.d]\nbetween = ['a', 'b']\nfriction = 0\n[contact.f]\nbetween = ['b', 'wall']\nfriction = 0\n";
+    ends(TEXT, &[("b", 0.05), ("a", -0.15)], 1e-6);
+    let (simulation, _) = run(TEXT, "1 ms");
+    let block = simulation.layout.blocks.iter().find(|block| block.name == "b").unwrap().range.clone();
+    let y = simulation.state.q[block.start + 1];
+    assert!((y - 0.1).abs() < 1e-6, "{y}");
+}
+
+/// Two blocks whose sides press against each other tilt together, and come down in one impact, though they don't stand on each other.
+#[test]
+fn what_is_pressed_together_lands_together() {
+    const TEXT: &str = "[time]\nend = '0.8 s'\n[ground]\n\
+        [block.a]\ndensity = '2000 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.2343 m'\nheight = '0.1956 m'\non = 'ground'\nat = '0 m'\n\
+        velocity = ['2.474 m/s', '0 m/s']\n\
+        [block.b]\ndensity = '2000 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.1765 m'\nheight = '0.2381 m'\non = 'ground'\n\
+        at = '0.4357 m'\n\
+        [contact.c]\nbetween = ['?', 'ground']\nfriction = 0.1093\n[contact.d]\nbetween = ['a', 'b']\nfriction = 0\n";
+    ends(TEXT, &[("a", 0.831_113_5), ("b", 1.047_116_1)], 5e-6);
+}
+
+/// A block rides on a cart that has landed, and is tilted by the cart's tilt, too, when it meets a wall.
+#[test]
+fn a_rider_meets_a_wall_flush() {
+    const TEXT: &str = "[time]\nend = '0.6 s'\n[ground]\n\
+        [block.a]\ndensity = '2000 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.6 m'\nheight = '0.1 m'\non = 'ground'\nat = '0 m'\n\
+        tilt = '0.3 deg'\nvelocity = ['2 m/s', '0 m/s']\n\
+        [block.b]\ndensity = '2000 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.3 m'\nheight = '0.5 m'\non = 'a'\nat = '0.16 m'\n\
+        velocity = ['2 m/s', '0 m/s']\n\
+        [block.wall]\ndensity = '2000 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.2 m'\nheight = '1 m'\nposition = ['0.85 m', '0.65 m']\n\
+        fixed = true\n\
+        [contact.ag]\nbetween = ['a', 'ground']\nfriction = 0.05\n[contact.ab]\nbetween = ['a', 'b']\nfriction = 0.6\n\
+        [contact.bw]\nbetween = ['b', 'wall']\nfriction = 0\nrestitution = 0.5\n";
+    ends(TEXT, &[("a", 0.516_331_2), ("b", 0.496_731_1)], 2e-5);
 }
