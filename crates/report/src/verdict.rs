@@ -21,12 +21,16 @@ pub use lying::Side;
 use serde::{Deserialize, Serialize};
 use stance::{Edge, Outline, Stance};
 pub use stance::{SharedStances, Way};
-use teeter_integrator::{Mismatch, Model, RockingMonitor, State, StepReport};
+use teeter_integrator::{Mismatch, Model, PhaseKind, RockingMonitor, State, StepReport};
 use teeter_scenario::scene::{BlockScene, Placement, Scene, StopScene, SupportingBody};
 use teeter_scenario::simulation::Layout;
 
 /// A block is still below this part of √(gR): then no point of it rises by more than half a millionth of R by its speed alone.
 pub(crate) const STILL: f64 = 1e-3;
+
+/// A block that was still at both ends of a step moved within it if an impact changed its velocity by more than this part of √(gR), as that of a
+/// ball that hands a blow on.
+const STRUCK: f64 = 0.1;
 
 /// A block has fallen when it is past the point of no return by this part of the way to lying on the next side: a bent beam or a slope may be in the way
 /// of the rest.
@@ -400,9 +404,25 @@ impl Fates {
     /// Takes a step in.
     pub(crate) fn observe(&mut self, watch: &Watch, layout: &Layout, step: &StepReport<'_, 2>, state: &State) {
         self.look(watch, layout, step.t_start, state);
+        self.find_struck(watch, layout, step);
         self.touch(watch, step, state.t);
         if self.stopped.is_none() {
             self.stopped = self.stop(watch, state.t).map(|reason| (state.t, reason));
+        }
+    }
+
+    /// What is still at the end of the step is so from the last blow in it on.
+    fn find_struck(&mut self, watch: &Watch, layout: &Layout, step: &StepReport<'_, 2>) {
+        for phase in step.phases().filter(|phase| phase.kind == PhaseKind::Impact) {
+            for (number, (seen, watched)) in self.blocks.iter_mut().zip(&watch.blocks).enumerate() {
+                let range = layout.blocks[number].range.clone();
+                let [before, after] = phase.v.map(|v| &v[range.clone()]);
+                let [x, y, spin] = [0, 1, 2].map(|i| after[i] - before[i]);
+                let change = x.hypot(y) + watched.reach * spin.abs();
+                if change * STILL > STRUCK * watched.still_speed {
+                    seen.still = seen.still.map(|_| phase.end);
+                }
+            }
         }
     }
 
