@@ -62,8 +62,8 @@ fn is_long(borders: &[f64]) -> bool {
     borders.len() * 2 >= 40
 }
 
-/// Means over windows about the borders of buckets, of a quantity with these means over the buckets: over what of the window lies in a
-/// stretch, given by the borders at its ends. 0 elsewhere.
+/// Means over windows about the borders of buckets, of a quantity with these means over the buckets, in stretches given by the borders at
+/// their ends: over as much of the window as the stretch has on both sides. 0 elsewhere.
 fn over(borders: &[f64], values: &[f64], window: f64, stretches: &[[usize; 2]]) -> Vec<f64> {
     // The integral up to each border; between two, the quantity is constant.
     let mut integrals = vec![0.0];
@@ -78,15 +78,39 @@ fn over(borders: &[f64], values: &[f64], window: f64, stretches: &[[usize; 2]]) 
     for [first, last] in stretches {
         for place in *first..=*last {
             let t = borders[place];
-            let (from, to) = ((t - 0.5 * window).max(borders[*first]), (t + 0.5 * window).min(borders[*last]));
+            // Of one side alone it would lag or lead: towards an end the window becomes shorter on both sides.
+            let half = (0.5 * window).min(t - borders[*first]).min(borders[*last] - t);
+            let (from, to) = match half > 0.0 {
+                true => (t - half, t + half),
+                false if place == *first => (t, borders[place + 1]),
+                false => (borders[place - 1], t),
+            };
             means[place] = (integral(to) - integral(from)) / (to - from);
         }
     }
     means
 }
 
+/// The mean of the means may differ from these by so much of their range: more is a vibration that is too slow for the window, which
+/// flattens it.
+const FLATTENED: f64 = 0.05;
+
+/// Whether a window flattens means that were taken over it once more.
+fn is_flattened(borders: &[f64], means: &[f64], window: f64) -> bool {
+    let inner: Vec<f64> = means.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
+    let again = over(borders, &inner, window, &[[0, borders.len() - 1]]);
+    let (low, high) =
+        means.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+    let apart = means.iter().zip(&again).map(|(once, twice)| (once - twice).abs());
+    let mut apart: Vec<f64> = apart.collect();
+    apart.sort_by(f64::total_cmp);
+    // A jump is flattened for a moment only.
+    apart[apart.len() * 9 / 10] > FLATTENED * (high - low)
+}
+
 /// The means of a quantity over the window about the borders of the buckets. `None` unless it rings: strays from its mean, and crosses
-/// it at least once in a window, on average. A slower vibration is seen as it is, and a mean would only flatten it.
+/// it at least once in a window, on average. A slower vibration is seen as it is, and a mean would only flatten it: that of what
+/// rings, too.
 pub(super) fn ringing(curves: &Curves, column: usize, window: f64) -> Option<Vec<f64>> {
     let borders = curves.borders();
     if !is_long(&borders) || window <= 0.0 {
@@ -111,7 +135,8 @@ pub(super) fn ringing(curves: &Curves, column: usize, window: f64) -> Option<Vec
         crossings += 2 * usize::from((pair[1] - pair[0]).abs() > RINGS * drift.max(STRAY * largest));
     }
     let windows = (borders[borders.len() - 1] - borders[0]) / window;
-    (far as f64 > LEAST * own.len() as f64 && crossings as f64 >= windows).then_some(means)
+    let rings = far as f64 > LEAST * own.len() as f64 && crossings as f64 >= windows;
+    (rings && !is_flattened(&borders, &means, window)).then_some(means)
 }
 
 #[cfg(test)]
@@ -183,6 +208,31 @@ mod tests {
             // Five periods of it are seen without a mean.
             assert_eq!(of(5.0, capacity), None);
         }
+    }
+
+    #[test]
+    fn no_mean_flattens_a_slow_vibration_under_what_rings() {
+        let of = |slow: f64| {
+            let tau = 2.0 * std::f64::consts::PI;
+            let moment = |t: f64| 9.0 + 5.0 * (tau * slow * t).sin() + 4.0 * (tau * 400.0 * t).sin();
+            let mut curves = Curves::new(10_000, 0.0, vec![moment(0.0)], 0);
+            (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[moment(t)]));
+            ringing(&curves, 0, window(&curves))
+        };
+        // In windows of 20 ms: a period of 40 ms would keep 64 % of its size, one of 1 s all but a thousandth.
+        assert_eq!(of(25.0), None);
+        let means = of(1.0).unwrap();
+        let highest = means.iter().fold(0.0, |most: f64, x| most.max(*x));
+        assert!((highest - 14.0).abs() < 0.2, "{highest}");
+    }
+
+    #[test]
+    fn at_the_ends_of_a_run_the_mean_neither_leads_nor_lags() {
+        let rising = |t: f64| 100.0 * t + 20.0 * (2.0 * std::f64::consts::PI * 400.0 * t).sin();
+        let mut curves = Curves::new(10_000, 0.0, vec![rising(0.0)], 0);
+        (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[rising(t)]));
+        let means = ringing(&curves, 0, window(&curves)).unwrap();
+        assert!(means[0].abs() < 4.0, "{}", means[0]);
     }
 
     #[test]
