@@ -208,7 +208,7 @@ pub trait ContactDetector<const D: usize>: Send + Sync {
         room.clear();
         room.resize(out.len(), f64::INFINITY);
     }
-    /// Puts into `pieces`, of each of the contacts `ids`, by number which smooth piece of a surface it is on now: where that changes,
+    /// Puts into `pieces`, which is cleared first, of each of the contacts `ids`, by number which smooth piece of a surface it is on now: where that changes,
     /// the curvature jumps and with it the force, though the contact goes on as the same one, as where a disc rolls from a side over the
     /// corner at its end. `pieces` stays empty where no contact goes on from one piece to another; this is the default.
     fn pieces(&self, at: &dyn Geometry<D>, ids: &[ContactId], pieces: &mut Vec<u32>) {

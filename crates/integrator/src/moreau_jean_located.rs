@@ -194,7 +194,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.one.reserve(model);
         self.hits.reserve(contacts);
         self.slides.reserve(contacts);
-        self.strikes.reserve(contacts.min(crate::stage::RESERVED_CONTACTS));
+        self.strikes.reserve(contacts);
         self.ids.reserve(contacts);
         self.near.reserve(contacts);
         // Few of many contacts are inside on the way.
@@ -343,6 +343,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 self.find_what_leaves(model, rest.h, work)?;
                 (outcome, None)
             } else if at_once {
+                self.leaving.clear();
                 (outcome, None)
             } else {
                 self.find_end(model, from, &attempted, outcome, work)?

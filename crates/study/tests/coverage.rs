@@ -12,7 +12,7 @@ use teeter_study::{Setting, StudyScene, runner};
 
 /// Fits, each to other noise.
 const FITS: u64 = 50;
-/// With intervals that hold the value in 95 % of all cases, fewer than this come in 1 of 260 studies of one value.
+/// With intervals that hold the value in 95 % of all cases, fewer than this come in 1 of 300 studies of one value.
 const FEWEST: u64 = 43;
 /// Standard deviation of the noise, degrees.
 const NOISE: f64 = 0.03;

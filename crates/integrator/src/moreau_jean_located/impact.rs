@@ -16,6 +16,9 @@ const TOUCHING: f64 = 10.0;
 /// The time of an impact is uncertain by no more than this part of the scheme's step: a larger gap of a closed contact is not drift.
 const HIDDEN: f64 = 0.01;
 
+/// Gaps that would tilt a body by more (rad) are of contacts at one place, as in a corner between floor and wall, and tell no tilt.
+const MOST_TURN: f64 = 1e-3;
+
 /// A contact that strikes, and by how much its time is uncertain: by what closed contacts of its bodies have drifted from their surfaces.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strike<const D: usize> {
@@ -27,12 +30,12 @@ pub(super) struct Strike<const D: usize> {
 
 impl<const D: usize> Strike<D> {
     /// By how much the time (s) is uncertain at which another contact with these sides strikes, in comparison.
-    fn uncertainty(&self, sides: &[Anchor<D>; 2]) -> f64 {
+    fn uncertainty(&self, model: &Model<D>, sides: &[Anchor<D>; 2]) -> f64 {
         let lever = |side: &Anchor<D>| {
             let own = self.sides.iter().find(|own| own.body == side.body)?;
             Some((side.point - own.point).norm())
         };
-        let lever = sides.iter().filter_map(lever).fold(0.0, f64::max);
+        let lever = sides.iter().filter(|side| model.moves(side.body)).filter_map(lever).fold(0.0, f64::max);
         (self.drift.shift + self.drift.turn * lever) / -self.rate
     }
 }
@@ -57,7 +60,8 @@ impl Drift {
         let spread = of_body().map(|(_, side)| distance(far.unwrap_or(first), side)).fold(0.0, f64::max);
         let gaps = || of_body().map(|(of, _)| of.gap);
         let (least, most) = (gaps().fold(f64::INFINITY, f64::min), gaps().fold(f64::NEG_INFINITY, f64::max));
-        let turn = if spread > 0.0 { (most - least) / spread } else { 0.0 };
+        let turn = (most - least) / spread;
+        let turn = if turn <= MOST_TURN { turn } else { 0.0 };
         Self { shift: least.abs().max(most.abs()), turn }
     }
 
@@ -222,7 +226,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         // More is not drift.
         let longest = HIDDEN * from.dt;
         let fastest = self.strikes.iter().map(|strike| -strike.rate).fold(0.0, f64::max);
-        let times = self.strikes.iter().map(|strike| strike.uncertainty(&candidate.sides));
+        let times = self.strikes.iter().map(|strike| strike.uncertainty(model, &candidate.sides));
         let time = times.filter(|time| *time <= longest).fold(0.0, f64::max);
         let own = self.off_by(model, candidate);
         let own = if own <= longest * fastest { own } else { 0.0 };

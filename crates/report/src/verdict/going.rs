@@ -59,11 +59,11 @@ pub(super) struct Touched {
     now: f64,
     left: f64,
     highest: f64,
-    /// How far that flight rose above where it left, m.
+    /// How far that flight rose above where it left, or ended below, m.
     rose: f64,
 }
 
-/// What doesn't rise by this part of R over what carries it doesn't bounce, however long it touches nothing: it rides on a beam that moves up and
+/// What neither rises nor falls by this part of R over what carries it doesn't bounce, however long it touches nothing: it rides on a beam that moves up and
 /// down, micrometres above it. In free flight that takes as long as [`FLIGHT`].
 const RISES: f64 = 1e-3;
 
@@ -90,7 +90,7 @@ impl Fates {
             if flew && touched.last != Some(t) {
                 touched.landed = Some(t);
                 touched.flown = step.t_start - touched.last.unwrap_or(0.0);
-                touched.rose = if touched.last.is_some() { touched.highest - touched.left } else { f64::INFINITY };
+                touched.rose = if touched.last.is_some() { touched.strayed() } else { f64::INFINITY };
             }
             (touched.last, touched.left, touched.highest) = (Some(t), touched.now, touched.now);
         }
@@ -106,6 +106,11 @@ impl Touched {
         self.now = height;
         self.highest = self.highest.max(height);
     }
+
+    /// How far it has risen since it last touched something, or fallen below that place, m.
+    fn strayed(&self) -> f64 {
+        (self.highest - self.left).max(self.left - self.now)
+    }
 }
 
 impl Seen {
@@ -115,7 +120,7 @@ impl Seen {
         let (t, Touched { last, flown, .. }) = (state.t, self.touched);
         let least = RISES * watched.reach;
         let landed = self.touched.landed.filter(|_| self.touched.rose >= least);
-        let rides = last.is_some() && watched.gravity > 0.0 && self.touched.highest - self.touched.left < least;
+        let rides = last.is_some() && watched.gravity > 0.0 && self.touched.strayed() < least;
         if !rides && last.is_none_or(|last| t - last >= FLIGHT * watched.still_time) {
             // In free flight it is where it last touched something again when its speed has turned round.
             let is_above = |last: f64| vy > -0.5 * watched.gravity * (t - last);

@@ -140,7 +140,11 @@ impl MeasuredMotion {
         let angle = self.channels.iter().find(|(channel, _)| *channel == Channel::Phi);
         match angle {
             Some((_, values)) if self.channels.len() == 1 || self.signal(values) >= CLEAR_SIGNAL => Channel::Phi,
-            _ => self.clearest(|_| true, 0.0).unwrap_or(Channel::Phi),
+            // Of too few rows the noise isn't known.
+            _ => self
+                .clearest(|_| true, 0.0)
+                .or(self.channels.first().map(|(channel, _)| *channel))
+                .unwrap_or(Channel::Phi),
         }
     }
 

@@ -144,9 +144,10 @@ pub(crate) fn outliers(comparison: &Comparison) -> Option<String> {
         _ => "lines",
     };
     // A given alignment isn't made by any rows.
-    let counted = match comparison.settings.alignment.shift {
-        None => "left out of the alignment, not of the differences",
-        Some(_) => "not left out",
+    let given = comparison.settings.alignment;
+    let counted = match (given.shift, given.sign) {
+        (Some(_), Some(_)) => "not left out",
+        _ => "left out of the alignment, not of the differences",
     };
     Some(format!(
         "warning: outliers in {line} {}{and_more} of the table, far from the rows before and after, are {counted}; if they are errors of \
