@@ -91,26 +91,8 @@ fn over(borders: &[f64], values: &[f64], window: f64, stretches: &[[usize; 2]]) 
     means
 }
 
-/// The mean of the means may differ from these by so much of their range: more is a vibration that is too slow for the window, which
-/// flattens it.
-const FLATTENED: f64 = 0.05;
-
-/// Whether a window flattens means that were taken over it once more.
-fn is_flattened(borders: &[f64], means: &[f64], window: f64) -> bool {
-    let inner: Vec<f64> = means.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
-    let again = over(borders, &inner, window, &[[0, borders.len() - 1]]);
-    let (low, high) =
-        means.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
-    let apart = means.iter().zip(&again).map(|(once, twice)| (once - twice).abs());
-    let mut apart: Vec<f64> = apart.collect();
-    apart.sort_by(f64::total_cmp);
-    // A jump is flattened for a moment only.
-    apart[apart.len() * 9 / 10] > FLATTENED * (high - low)
-}
-
 /// The means of a quantity over the window about the borders of the buckets. `None` unless it rings: strays from its mean, and crosses
-/// it at least once in a window, on average. A slower vibration is seen as it is, and a mean would only flatten it: that of what
-/// rings, too.
+/// it at least once in a window, on average. A slower vibration is seen as it is, and a mean would only flatten it.
 pub(super) fn ringing(curves: &Curves, column: usize, window: f64) -> Option<Vec<f64>> {
     let borders = curves.borders();
     if !is_long(&borders) || window <= 0.0 {
@@ -135,8 +117,7 @@ pub(super) fn ringing(curves: &Curves, column: usize, window: f64) -> Option<Vec
         crossings += 2 * usize::from((pair[1] - pair[0]).abs() > RINGS * drift.max(STRAY * largest));
     }
     let windows = (borders[borders.len() - 1] - borders[0]) / window;
-    let rings = far as f64 > LEAST * own.len() as f64 && crossings as f64 >= windows;
-    (rings && !is_flattened(&borders, &means, window)).then_some(means)
+    (far as f64 > LEAST * own.len() as f64 && crossings as f64 >= windows).then_some(means)
 }
 
 #[cfg(test)]
@@ -208,22 +189,6 @@ mod tests {
             // Five periods of it are seen without a mean.
             assert_eq!(of(5.0, capacity), None);
         }
-    }
-
-    #[test]
-    fn no_mean_flattens_a_slow_vibration_under_what_rings() {
-        let of = |slow: f64| {
-            let tau = 2.0 * std::f64::consts::PI;
-            let moment = |t: f64| 9.0 + 5.0 * (tau * slow * t).sin() + 4.0 * (tau * 400.0 * t).sin();
-            let mut curves = Curves::new(10_000, 0.0, vec![moment(0.0)], 0);
-            (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[moment(t)]));
-            ringing(&curves, 0, window(&curves))
-        };
-        // In windows of 20 ms: a period of 40 ms would keep 64 % of its size, one of 1 s all but a thousandth.
-        assert_eq!(of(25.0), None);
-        let means = of(1.0).unwrap();
-        let highest = means.iter().fold(0.0, |most: f64, x| most.max(*x));
-        assert!((highest - 14.0).abs() < 0.2, "{highest}");
     }
 
     #[test]
