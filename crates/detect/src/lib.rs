@@ -208,9 +208,10 @@ pub trait ContactDetector<const D: usize>: Send + Sync {
         room.clear();
         room.resize(out.len(), f64::INFINITY);
     }
-    /// Puts into `pieces`, which is cleared first, of each of the contacts `ids`, by number which smooth piece of a surface it is on now: where that changes,
-    /// the curvature jumps and with it the force, though the contact goes on as the same one, as where a disc rolls from a side over the
-    /// corner at its end. `pieces` stays empty where no contact goes on from one piece to another; this is the default.
+    /// Puts the number of the smooth piece of a surface on which each of the contacts `ids` is now into `pieces`,
+    /// which is cleared first. Where it changes the curvature jumps, and the force with it, though the contact stays
+    /// the same one: a disc that rolls from a side over the corner at its end. `pieces` stays empty where no contact
+    /// can change its piece; this is the default.
     fn pieces(&self, at: &dyn Geometry<D>, ids: &[ContactId], pieces: &mut Vec<u32>) {
         let _ = (at, ids);
         pieces.clear();

@@ -340,13 +340,10 @@ impl ShapeDetector {
 
     /// The contact of two members by its feature.
     fn touch(&self, at: &dyn Geometry<2>, members: [usize; 2], feature: CornerOnSide) -> Option<Touch> {
-        let [owner, other] = if feature.owner == 0 { members } else { [members[1], members[0]] };
-        let (part, beside) = (self.shapes.part_of(owner, feature.corner)?, self.shapes.part_of(other, feature.side)?);
-        if feature.round == self.are_sharp(part, beside) {
+        let [part, beside] = self.parts_of(members, feature)?;
+        if feature.round == self.are_sharp(part.0, beside.0) {
             return None;
         }
-        let bodies = [owner, other].map(|member| self.shapes.members[member].body);
-        let [part, beside] = [(part, bodies[0]), (beside, bodies[1])];
         if feature.round {
             let [part, beside] = [part, beside].map(|(part, body)| self.shapes.outline(part, BodyFrame::of(body, at)));
             return near_outline(feature, &part, &beside);
@@ -369,11 +366,17 @@ impl ShapeDetector {
         if !feature.round {
             return None;
         }
+        let parts = self.parts_of(members, feature)?;
+        let [owner, other] = parts.map(|(part, body)| self.shapes.outline(part, BodyFrame::of(body, at)));
+        piece(feature, &owner, &other)
+    }
+
+    /// The part with the corner of a feature and the part beside it, each with its body.
+    fn parts_of(&self, members: [usize; 2], feature: CornerOnSide) -> Option<[(usize, BodyId); 2]> {
         let [owner, other] = if feature.owner == 0 { members } else { [members[1], members[0]] };
         let parts = [self.shapes.part_of(owner, feature.corner)?, self.shapes.part_of(other, feature.side)?];
-        let bodies = [owner, other].map(|member| BodyFrame::of(self.shapes.members[member].body, at));
-        let [owner, other] = [0, 1].map(|i| self.shapes.outline(parts[i], bodies[i]));
-        piece(feature, &owner, &other)
+        let [body, beside] = [owner, other].map(|member| self.shapes.members[member].body);
+        Some([(parts[0], body), (parts[1], beside)])
     }
 
     /// Whether neither of two parts is round.

@@ -81,7 +81,7 @@ pub struct MoreauJeanLocated<const D: usize> {
     hits: Vec<Hit>,
     /// Slides that stop within the attempt.
     slides: Vec<Slide<D>>,
-    /// Contacts that strike at an uncertain time.
+    /// Contacts that strike, with what their bodies may be off their place.
     strikes: Vec<Strike<D>>,
     ids: Vec<ContactId>,
     near: Candidates<D>,
@@ -91,8 +91,8 @@ pub struct MoreauJeanLocated<const D: usize> {
     rooms: Vec<f64>,
     /// Contacts that are past it at the end of the attempt.
     leaving: Vec<ContactId>,
-    /// Contacts that press.
-    pieced: Vec<ContactId>,
+    /// Contacts that press, in the order of `pieces`.
+    pressing: Vec<ContactId>,
     /// Of these, on which pieces of their surfaces they are at the start of the attempt, and at another time.
     pieces: [Vec<u32>; 2],
     /// Coordinates on the way of an attempt.
@@ -149,7 +149,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             on_the_way: Vec::new(),
             rooms: Vec::new(),
             leaving: Vec::new(),
-            pieced: Vec::new(),
+            pressing: Vec::new(),
             pieces: [Vec::new(), Vec::new()],
             place: Vec::new(),
             one: ContactStage::new(),
@@ -201,7 +201,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.on_the_way.reserve(contacts.min(crate::stage::RESERVED_CONTACTS));
         self.rooms.reserve(contacts);
         self.leaving.reserve(contacts);
-        self.pieced.reserve(contacts);
+        self.pressing.reserve(contacts);
         self.pieces.iter_mut().for_each(|pieces| pieces.reserve(contacts));
         self.stays.reserve(contacts);
         self.lately.reserve(3 * contacts);

@@ -419,7 +419,7 @@ impl Fates {
                 let [before, after] = phase.v.map(|v| &v[range.clone()]);
                 let [x, y, spin] = [0, 1, 2].map(|i| after[i] - before[i]);
                 let change = x.hypot(y) + watched.reach * spin.abs();
-                if change * STILL > STRUCK * watched.still_speed {
+                if change > STRUCK / STILL * watched.still_speed {
                     seen.still = seen.still.map(|_| phase.end);
                 }
             }

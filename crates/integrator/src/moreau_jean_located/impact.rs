@@ -40,7 +40,7 @@ impl<const D: usize> Strike<D> {
     }
 }
 
-/// How far a body may be off its place.
+/// A bound on the error of a body's position, by the gaps that its closed contacts have drifted to.
 #[derive(Clone, Copy, Debug, Default)]
 struct Drift {
     /// m.

@@ -62,20 +62,21 @@ impl<const D: usize> MoreauJeanLocated<D> {
 
     /// Finds on which pieces of their surfaces contacts that press are at the start of the attempt.
     fn find_pieces(&mut self, model: &Model<D>, from: &State) {
-        let Self { step, pieced, pieces, .. } = self;
-        pieced.clear();
-        let pressing = step.stage.contacts().iter().filter(|contact| contact.persisting && contact.p[0] > 0.0);
-        pieced.extend(pressing.map(|contact| contact.id));
+        let Self { step, pressing, pieces, .. } = self;
+        pressing.clear();
+        let contacts = step.stage.contacts().iter();
+        let press = contacts.filter(|contact| contact.persisting && contact.p[0] > 0.0);
+        pressing.extend(press.map(|contact| contact.id));
         pieces[0].clear();
-        if !pieced.is_empty() {
-            model.detector().pieces(&model.placed_at(&from.q), pieced, &mut pieces[0]);
+        if !pressing.is_empty() {
+            model.detector().pieces(&model.placed_at(&from.q), pressing, &mut pieces[0]);
         }
     }
 
     /// Whether one of these is on another piece at the end of the attempt.
     fn changes_piece(&mut self, model: &Model<D>) -> bool {
-        let Self { step, pieced, pieces: [first, now], .. } = self;
-        is_elsewhere(model, &step.step.q_at, pieced, first, now)
+        let Self { step, pressing, pieces: [first, now], .. } = self;
+        is_elsewhere(model, &step.step.q_at, pressing, first, now)
     }
 
     /// Finds the contacts that press and are past the end of their surface at the end of the attempt, which lasted `h` (s).
@@ -106,7 +107,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
         Ok(())
     }
 
-    /// When the first of `ids` is past its end, or one that presses on another piece, s, between these times, along the motion of an attempt that lasted so long.
+    /// When the first of `ids` is past its end, or one that presses is on another piece, s, between these times, along
+    /// the motion of an attempt that lasted so long.
     fn passes_end(
         &mut self,
         model: &Model<D>,
@@ -119,9 +121,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
             let tau = 0.5 * (inside + past);
             self.place_at(model, from, lasted, tau);
             work.locate_past_ends(model, &self.place, &self.ids, &mut self.near, &mut self.rooms)?;
-            let Self { place, pieced, pieces: [first, now], .. } = self;
+            let Self { place, pressing, pieces: [first, now], .. } = self;
             let all_over =
-                self.rooms.iter().all(|room| *room >= 0.0) && !is_elsewhere(model, place, pieced, first, now);
+                self.rooms.iter().all(|room| *room >= 0.0) && !is_elsewhere(model, place, pressing, first, now);
             *(if all_over { &mut inside } else { &mut past }) = tau;
             if past - inside <= f64::EPSILON * past {
                 break;

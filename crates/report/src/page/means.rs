@@ -80,10 +80,12 @@ fn over(borders: &[f64], values: &[f64], window: f64, stretches: &[[usize; 2]]) 
             let t = borders[place];
             // Of one side alone it would lag or lead: towards an end the window becomes shorter on both sides.
             let half = (0.5 * window).min(t - borders[*first]).min(borders[*last] - t);
-            let (from, to) = match half > 0.0 {
-                true => (t - half, t + half),
-                false if place == *first => (t, borders[place + 1]),
-                false => (borders[place - 1], t),
+            let (from, to) = if half > 0.0 {
+                (t - half, t + half)
+            } else if place == *first {
+                (t, borders[place + 1])
+            } else {
+                (borders[place - 1], t)
             };
             means[place] = (integral(to) - integral(from)) / (to - from);
         }

@@ -1,6 +1,6 @@
 //! Discs on blocks: the time at which one comes to the corner at the end of a side.
 
-use super::located::run;
+use super::located::{pose, run};
 
 /// A disc slides off the end of a block that slides under it the other way. At the corner the curvature of what it slides on jumps; it is
 /// so fast that it flies on from there. The motion has a closed form, of constant accelerations up to the corner.
@@ -25,8 +25,7 @@ fn a_disc_lets_go_at_the_corner_in_time() {
     for step in ["500 us", "250 us"] {
         let (simulation, _) = run(TEXT, step);
         for (name, right) in ["b", "disc"].into_iter().zip(right) {
-            let block = simulation.layout.blocks.iter().find(|block| block.name == name).unwrap().range.clone();
-            let x = simulation.state.q[block.start];
+            let [x, ..] = pose(&simulation, name);
             assert!((x - right).abs() < 5e-8, "{step}: {name} at {x} instead of {right}");
         }
     }

@@ -1,15 +1,16 @@
 //! Sides that meet flush after one of the blocks has landed, and keeps a tilt of what its corners have sunk in.
 
-use super::located::run;
+use super::located::{pose, run};
+use teeter_scenario::simulation::Simulation;
 
-/// Whether blocks end where they are in an event-driven run, at 1 ms to this accuracy (m).
-fn ends(text: &str, blocks: &[(&str, f64)], accuracy: f64) {
+/// Runs a scene at 1 ms, in which blocks must end where they do in an event-driven run, to this accuracy (m).
+fn ends(text: &str, blocks: &[(&str, f64)], accuracy: f64) -> Simulation {
     let (simulation, seen) = run(text, "1 ms");
     for (name, end) in blocks {
-        let block = simulation.layout.blocks.iter().find(|block| block.name == *name).unwrap().range.clone();
-        let x = simulation.state.q[block.start];
+        let [x, ..] = pose(&simulation, name);
         assert!((x - end).abs() < accuracy, "{name}: {x}, {:?}", seen.impacts);
     }
+    simulation
 }
 
 /// A block that landed keeps a tilt, as one corner has sunk in deeper than the other. Where its side meets a wall flush it doesn't turn:
@@ -26,8 +27,7 @@ fn a_side_meets_a_wall_flush_after_a_landing() {
         [contact.w]\nbetween = ['b', 'wall']\nfriction = 0.13\nlaw = 'energetic'\nrestitution = 0.5\n";
     for step in ["1 ms", "250 us"] {
         let (simulation, seen) = run(TEXT, step);
-        let block = simulation.layout.blocks.iter().find(|block| block.name == "b").unwrap().range.clone();
-        let [x, phi] = [0, 2].map(|i| simulation.state.q[block.start + i]);
+        let [x, _, phi] = pose(&simulation, "b");
         assert!((x - 0.138_406).abs() < 2e-6 && phi.abs() < 1e-5, "{step}: {x} {phi}, {:?}", seen.impacts);
     }
 }
@@ -57,10 +57,8 @@ fn what_lies_against_a_wall_does_not_hop_when_struck() {
         position = ['0.25 m', '0.3 m']\n\
         [contact.c]\nbetween = ['?', 'ground']\nfriction = 0.1\n\
         [contact.d]\nbetween = ['a', 'b']\nfriction = 0\n[contact.f]\nbetween = ['b', 'wall']\nfriction = 0\n";
-    ends(TEXT, &[("b", 0.05), ("a", -0.15)], 1e-6);
-    let (simulation, _) = run(TEXT, "1 ms");
-    let block = simulation.layout.blocks.iter().find(|block| block.name == "b").unwrap().range.clone();
-    let y = simulation.state.q[block.start + 1];
+    let simulation = ends(TEXT, &[("b", 0.05), ("a", -0.15)], 1e-6);
+    let [_, y, _] = pose(&simulation, "b");
     assert!((y - 0.1).abs() < 1e-6, "{y}");
 }
 

@@ -26,6 +26,12 @@ impl Observer<2> for Seen {
 
 const G: f64 = 9.81;
 
+/// X, Y and φ of a block.
+pub(super) fn pose(simulation: &Simulation, name: &str) -> [f64; 3] {
+    let block = simulation.layout.blocks.iter().find(|block| block.name == name).unwrap();
+    simulation.state.q[block.range.clone()].try_into().unwrap()
+}
+
 pub(super) fn run(scene: &str, step: &str) -> (Simulation, Seen) {
     let sets = [("time.scheme", "moreau-jean-located"), ("time.step", step)];
     let sets: Vec<(String, String)> =
@@ -508,8 +514,7 @@ fn a_corner_slides_off_a_side_without_a_blow() {
     for step in ["2 ms", "1 ms", "250 us"] {
         let (simulation, seen) = run(TEXT, step);
         assert!(seen.impacts.is_empty(), "{step}: {:?}", seen.impacts);
-        let block = simulation.layout.blocks.iter().find(|block| block.name == "b").unwrap().range.clone();
-        let phi = simulation.state.q[block][2];
+        let [_, _, phi] = pose(&simulation, "b");
         assert!((phi - 0.169_296_9).abs() < 2e-6, "{step}: {phi}");
     }
 }
@@ -529,8 +534,7 @@ fn a_slide_that_stops_where_something_strikes_at_once_is_no_part_of_a_step() {
         [contact.c]\nbetween = ['*', '*']\nfriction = 0.2619\nlaw = 'newton'\nrestitution = 0.6\n";
     for step in ["1 ms", "500 us"] {
         let (simulation, _) = run(TEXT, step);
-        let block = simulation.layout.blocks.iter().find(|block| block.name == "b1").unwrap().range.clone();
-        let x = simulation.state.q[block.start];
+        let [x, ..] = pose(&simulation, "b1");
         assert!((x - 0.343_225).abs() < 2e-5, "{step}: {x}");
     }
 }

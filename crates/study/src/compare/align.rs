@@ -105,10 +105,9 @@ fn align_without(
     settings: AlignmentSettings,
     off: &[(usize, usize)],
 ) -> Aligned {
-    let signs = settings.sign.map_or(vec![Sign::AsIs, Sign::Reversed], |sign| vec![sign]);
     let start = trace.at(0.0).map_or(0.0, |motion| motion.of(Channel::Phi));
-    let mut best: Option<(f64, Aligned)> = None;
-    for sign in signs {
+    // Beside how well it fits what tells the side.
+    let seen_from = |sign: Sign| {
         let mut motion = measured.motion(sign);
         set_zero(&mut motion, sign.factor() * offset, start);
         let counted = without(&motion, off);
@@ -122,23 +121,17 @@ fn align_without(
         } else {
             side_mismatch(&counted, trace, end, shift).map_or((mismatch, false), |of_side| (of_side, true))
         };
-        // Of an exact tie, the side as it is.
-        if best.as_ref().is_none_or(|(found, _)| of_side < *found) {
-            let shift_found = settings.shift.is_none();
-            let sign_found = settings.sign.is_none() && tells_side;
-            let alignment = Alignment { shift, shift_found, sign, sign_found, by: search.channel, mismatch };
-            best = Some((of_side, Aligned { alignment, motion, outliers: Vec::new() }));
-        }
+        let shift_found = settings.shift.is_none();
+        let sign_found = settings.sign.is_none() && tells_side;
+        let alignment = Alignment { shift, shift_found, sign, sign_found, by: search.channel, mismatch };
+        (of_side, Aligned { alignment, motion, outliers: Vec::new() })
+    };
+    if let Some(sign) = settings.sign {
+        return seen_from(sign).1;
     }
-    best.map_or_else(
-        || {
-            let (sign, by) = (Sign::AsIs, Channel::Phi);
-            let alignment =
-                Alignment { shift: 0.0, shift_found: true, sign, sign_found: true, by, mismatch: f64::INFINITY };
-            Aligned { alignment, motion: measured.motion(sign), outliers: Vec::new() }
-        },
-        |(_, aligned)| aligned,
-    )
+    let [as_is, reversed] = [Sign::AsIs, Sign::Reversed].map(seen_from);
+    // Of an exact tie, the side as it is.
+    if reversed.0 < as_is.0 { reversed.1 } else { as_is.1 }
 }
 
 /// The mismatch of the quantity that tells best from which side a motion was seen, with a time shift; `None` if there is none above its noise.

@@ -17,7 +17,7 @@ pub struct Constant {
     pub rms: f64,
 }
 
-/// A larger share of the mean square difference of unrelated motions is told.
+/// Motions with a larger share of the mean square difference that unrelated ones have hardly match.
 pub(super) const UNLIKE: f64 = 0.1;
 /// The least part of the mean square difference of the angle that is told when a constant explains it.
 const CONSTANT_FROM: f64 = 0.25;
