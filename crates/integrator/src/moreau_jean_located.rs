@@ -194,11 +194,11 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.one.reserve(model);
         self.hits.reserve(contacts);
         self.slides.reserve(contacts);
-        self.strikes.reserve(contacts);
         self.ids.reserve(contacts);
         self.near.reserve(contacts);
-        // Few of many contacts are inside on the way.
+        // Few of many contacts are inside on the way, or strike at once.
         self.on_the_way.reserve(contacts.min(crate::stage::RESERVED_CONTACTS));
+        self.strikes.reserve(contacts.min(crate::stage::RESERVED_CONTACTS));
         self.rooms.reserve(contacts);
         self.leaving.reserve(contacts);
         self.pressing.reserve(contacts);
