@@ -1,5 +1,6 @@
 //! The Moreau–Jean step with located impacts: `moreau-jean-located` (`docs/schemes.md`).
 
+mod drift;
 mod impact;
 mod leave;
 mod locate;
@@ -14,6 +15,7 @@ use crate::{
     Contact, ContactStage, Keep, Model, MoreauJeanClosedSettings, Part, STEP_ROUNDING, Scheme, SettingError, State,
     StepError, StepReport, StepSpan, Weights, Workspace,
 };
+use drift::Flights;
 use impact::Strike;
 use locate::Hit;
 pub(crate) use locate::rate_at;
@@ -111,6 +113,7 @@ pub struct MoreauJeanLocated<const D: usize> {
     /// Contacts with something elastic that pressed lately: pair, point, and the last step in which
     /// they did, as the state's memory holds them.
     lately: Vec<f64>,
+    flights: Flights,
     /// Which subsystems are elastic, and whether any is.
     elastic: Vec<bool>,
     has_elastic: bool,
@@ -158,6 +161,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             v: Vec::new(),
             stays: Vec::new(),
             lately: Vec::new(),
+            flights: Flights::default(),
             elastic: Vec::new(),
             has_elastic: true,
             has_rigid_pairs: true,
@@ -204,14 +208,18 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.pressing.reserve(contacts);
         self.pieces.iter_mut().for_each(|pieces| pieces.reserve(contacts));
         self.stays.reserve(contacts);
-        self.lately.reserve(3 * contacts);
+        // Few bodies fly that have stood still before.
+        let flights = model.body_count().min(crate::stage::RESERVED_CONTACTS);
+        let numbers = 3 * contacts + Flights::NUMBERS * flights;
+        self.lately.reserve(numbers);
+        self.flights.reserve(flights);
         self.by_forces.resize(model.size().v, 0.0);
         self.in_lowest_bounce.reserve(contacts.min(crate::stage::RESERVED_CONTACTS));
         self.v.resize(model.size().v, 0.0);
         self.place.resize(model.size().q, 0.0);
-        state.memory.reserve_numbers(3 * contacts);
+        state.memory.reserve_numbers(numbers);
         let mut from = state.clone();
-        from.memory.reserve_numbers(3 * contacts);
+        from.memory.reserve_numbers(numbers);
         from.warm.reserve(contacts, D);
         from.memory.reserve(contacts);
         self.from = Some(Box::new(from));
@@ -245,11 +253,18 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         let mut from = self.from.take().unwrap_or_else(|| Box::new(state.clone()));
         from.copy_motion(state);
         self.lately.clear();
-        self.lately.extend_from_slice(state.memory.all_numbers());
+        self.flights.clear();
+        for held in state.memory.all_numbers().chunks_exact(3) {
+            match held[0] < 0.0 {
+                true => self.flights.push(held),
+                false => self.lately.extend_from_slice(held),
+            }
+        }
         let penetration = self.take_parts(model, &mut from, &span, work);
         self.from = Some(from);
         let (penetration, stays) = (penetration?, &self.stays);
         let report = work.finish(model, state, Some(penetration), |i, _| stays[i])?;
+        self.lately.extend(self.flights.numbers());
         state.memory.set_numbers(&self.lately);
         state.tally.unlocated_steps += u64::from(self.unlocated);
         Ok(report)
@@ -284,6 +299,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         self.by_forces.extend(by_forces);
         self.in_lowest_bounce.clear();
         self.in_lowest_bounce.extend_from_slice(in_lowest_bounce);
+        self.flights.clear();
         let end = from.t;
         let struck = self.strike(model, from, end, work);
         self.in_lowest_bounce.clear();
@@ -299,6 +315,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         work: &mut Workspace<D>,
     ) -> Result<(), StepError> {
         self.lately.clear();
+        self.flights.clear();
         self.take_parts(model, from, rest, work).map(|_| ())
     }
 
@@ -415,6 +432,24 @@ impl<const D: usize> MoreauJeanLocated<D> {
         self.lately.truncate(kept);
     }
 
+    /// Remembers what bodies have drifted that take off in the part of the step from `from`, and forgets it of those that have landed.
+    fn follow_flights(&mut self, model: &Model<D>, from: &State, work: &mut Workspace<D>) -> Result<(), StepError> {
+        let Self { step, stays, flights, near, elastic, ids, .. } = self;
+        // What takes off from a beam has no place that is known so well.
+        let is_elastic = |(index, _, _): (usize, _, _)| elastic.get(index).copied().unwrap_or(true);
+        let is_rigid = |contact: &Contact<D>| {
+            model.spring(contact.law).is_none()
+                && !contact.sides.iter().any(|side| model.owner(side.body).is_some_and(is_elastic))
+        };
+        if flights.land(model, step.stage.contacts(), stays, is_rigid) {
+            ids.clear();
+            ids.extend(from.memory.active());
+            work.locate(model, &from.q, ids, near)?;
+            flights.take_off(model, near);
+        }
+        Ok(())
+    }
+
     /// Ends the part of the step that was attempted, and moves on to its end.
     fn take_part(
         &mut self,
@@ -430,6 +465,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         // A pressed spring is kept for the contact that takes it over.
         let leaves = |contact: &Contact<D>| contact.gap_after.is_none() && self.leaving.contains(&contact.id);
         self.stays.extend(contacts.map(|(contact, stays)| *stays && !leaves(contact)));
+        self.follow_flights(model, from, work)?;
         from.warm.clear();
         from.memory.forget_contacts();
         for (contact, stays) in self.step.stage.contacts().iter().zip(&self.stays) {

@@ -1,10 +1,11 @@
 //! An impact: places stand still, velocities jump.
 
+use super::drift::{Drift, contacts_of};
 use super::{MASSES, MoreauJeanLocated, rate_at};
 use crate::closed_step::{leaves, restitute};
 use crate::laws::is_impact;
 use crate::{
-    ContactError, Keep, Mismatch, Model, Over, PhaseEnd, PhaseKind, Responses, Rule, State, StepError, Vector,
+    Contact, ContactError, Keep, Mismatch, Model, Over, PhaseEnd, PhaseKind, Responses, Rule, State, StepError, Vector,
     Workspace,
 };
 use std::ops::Add;
@@ -15,9 +16,6 @@ const TOUCHING: f64 = 10.0;
 
 /// The time of an impact is uncertain by no more than this part of the scheme's step: a larger gap of a closed contact is not drift.
 const HIDDEN: f64 = 0.01;
-
-/// Gaps that would tilt a body by more (rad) are of contacts at one place, as in a corner between floor and wall, and tell no tilt.
-const MOST_TURN: f64 = 1e-3;
 
 /// A contact that strikes, and by how much its time is uncertain: by what closed contacts of its bodies have drifted from their surfaces.
 #[derive(Clone, Copy, Debug)]
@@ -38,62 +36,6 @@ impl<const D: usize> Strike<D> {
         let lever = sides.iter().filter(|side| model.moves(side.body)).filter_map(lever).fold(0.0, f64::max);
         (self.drift.shift + self.drift.turn * lever) / -self.rate
     }
-}
-
-/// A bound on the error of a body's position, by the gaps that its closed contacts have drifted to.
-#[derive(Clone, Copy, Debug, Default)]
-struct Drift {
-    /// m.
-    shift: f64,
-    /// By what angle, rad.
-    turn: f64,
-}
-
-impl Drift {
-    /// What a body's closed contacts have drifted from their surfaces: their largest gap, and the spread of their gaps over that of their
-    /// points.
-    fn at<const D: usize>(model: &Model<D>, body: BodyId, closed: &[Candidate<D>]) -> Self {
-        let of_body = || contacts_of(model, body, closed);
-        let Some((_, first)) = of_body().next() else { return Self::default() };
-        let distance = |from: &Anchor<D>, to: &Anchor<D>| (to.point - from.point).norm();
-        let far = of_body().map(|(_, side)| side).max_by(|a, b| distance(first, a).total_cmp(&distance(first, b)));
-        let spread = of_body().map(|(_, side)| distance(far.unwrap_or(first), side)).fold(0.0, f64::max);
-        let gaps = || of_body().map(|(of, _)| of.gap);
-        let (least, most) = (gaps().fold(f64::INFINITY, f64::min), gaps().fold(f64::NEG_INFINITY, f64::max));
-        let turn = (most - least) / spread;
-        let turn = if turn <= MOST_TURN { turn } else { 0.0 };
-        Self { shift: least.abs().max(most.abs()), turn }
-    }
-
-    /// The same with that of the body that has drifted most among those that it stands on, or that stand on it.
-    fn of<const D: usize>(model: &Model<D>, body: BodyId, closed: &[Candidate<D>]) -> Self {
-        let neighbours = contacts_of(model, body, closed).flat_map(|(of, _)| of.sides.map(|side| side.body));
-        let moving = neighbours.filter(|other| *other != body && model.moves(*other));
-        let most = moving.map(|other| Self::at(model, other, closed)).fold(Self::default(), Self::max);
-        Self::at(model, body, closed) + most
-    }
-
-    fn max(self, other: Self) -> Self {
-        Self { shift: self.shift.max(other.shift), turn: self.turn.max(other.turn) }
-    }
-}
-
-impl Add for Drift {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self { shift: self.shift + other.shift, turn: self.turn + other.turn }
-    }
-}
-
-/// The closed contacts of a body, with its side of each; not those with springs, whose gaps are no drift.
-fn contacts_of<'a, const D: usize>(
-    model: &'a Model<D>,
-    body: BodyId,
-    closed: &'a [Candidate<D>],
-) -> impl Iterator<Item = (&'a Candidate<D>, &'a Anchor<D>)> {
-    let rigid = closed.iter().filter(|of| model.spring(of.law).is_none());
-    rigid.filter_map(move |of| of.sides.iter().find(|side| side.body == body).map(|side| (of, side)))
 }
 
 impl<const D: usize> MoreauJeanLocated<D> {
@@ -130,6 +72,10 @@ impl<const D: usize> MoreauJeanLocated<D> {
             if stays {
                 from.memory.insert(contact);
             }
+        }
+        let is_rigid = |contact: &Contact<D>| model.spring(contact.law).is_none();
+        if self.flights.land(model, self.impact.contacts(), &self.stays, is_rigid) {
+            self.flights.take_off(model, &self.near);
         }
         let energy = self.step.step.work_of_impact(model, from, work, &self.impact, &self.v)?;
         let phase = PhaseEnd::new(PhaseKind::Impact, end, &from.q, &self.v).with_energy(energy).with_outcome(outcome);
@@ -184,7 +130,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
     fn find_strikes(&mut self, model: &Model<D>, from: &State, work: &Workspace<D>) -> Result<(), Mismatch> {
         self.strikes.clear();
         let is_off = |closed: &Candidate<D>| closed.gap != 0.0 && model.spring(closed.law).is_none();
-        if !self.near.iter().any(is_off) {
+        if self.flights.is_empty() && !self.near.iter().any(is_off) {
             return Ok(());
         }
         let touching = TOUCHING * self.tolerance(&from.q);
@@ -197,7 +143,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
             }
             let rate = rate_at(&mut self.one, model, &from.q, candidate, &from.v)?;
             if leaves(-rate, || self.one.speed(0, &from.v)) {
-                let mut drift = self.drift_of(model, candidate);
+                let moving = candidate.sides.iter().filter(|side| model.moves(side.body));
+                let mut drift = moving.map(|side| self.drift_of(model, side.body)).fold(Drift::default(), Drift::add);
                 if drift.shift > 0.0 {
                     drift.shift = drift.shift.max(touching);
                 }
@@ -207,10 +154,13 @@ impl<const D: usize> MoreauJeanLocated<D> {
         Ok(())
     }
 
-    /// What both bodies of a contact have drifted.
-    fn drift_of(&self, model: &Model<D>, contact: &Candidate<D>) -> Drift {
-        let moving = contact.sides.iter().filter(|side| model.moves(side.body));
-        moving.map(|side| Drift::of(model, side.body, &self.near)).fold(Drift::default(), |sum, of| sum + of)
+    /// What a body's closed contacts have drifted from their surfaces, or it has taken along into flight; with that of the body that has
+    /// drifted most among those that it stands on, or that stand on it.
+    fn drift_of(&self, model: &Model<D>, body: BodyId) -> Drift {
+        let of = |body| Drift::at(model, body, &self.near).max(self.flights.drift_of(body));
+        let neighbours = contacts_of(model, body, &self.near).flat_map(|(of, _)| of.sides.map(|side| side.body));
+        let moving = neighbours.filter(|other| *other != body && model.moves(*other));
+        of(body) + moving.map(of).fold(Drift::default(), Drift::max)
     }
 
     /// Whether a contact that doesn't touch takes part in the impact: what its bodies have drifted may be all of its gap, or it would touch
@@ -238,7 +188,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
     fn off_by(&self, model: &Model<D>, contact: &Candidate<D>) -> f64 {
         let of_side = |side: &Anchor<D>| {
             let levers = contacts_of(model, side.body, &self.near).map(|(_, of)| (side.point - of.point).norm());
-            let drift = Drift::of(model, side.body, &self.near);
+            let drift = self.drift_of(model, side.body);
             drift.shift + drift.turn * levers.fold(0.0, f64::max)
         };
         contact.sides.iter().filter(|side| model.moves(side.body)).map(of_side).sum()

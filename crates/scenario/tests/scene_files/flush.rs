@@ -1,6 +1,7 @@
 //! Sides that meet flush after one of the blocks has landed, and keeps a tilt of what its corners have sunk in.
 
-use super::located::{pose, run};
+use super::located::{pose, run, simulation};
+use teeter_integrator::Ended;
 use teeter_scenario::simulation::Simulation;
 
 /// Runs a scene at 1 ms, in which blocks must end where they do in an event-driven run, to this accuracy (m).
@@ -87,4 +88,43 @@ fn a_rider_meets_a_wall_flush() {
         [contact.ag]\nbetween = ['a', 'ground']\nfriction = 0.05\n[contact.ab]\nbetween = ['a', 'b']\nfriction = 0.6\n\
         [contact.bw]\nbetween = ['b', 'wall']\nfriction = 0\nrestitution = 0.5\n";
     ends(TEXT, &[("a", 0.516_331_2), ("b", 0.496_731_1)], 2e-5);
+}
+
+/// A block that rocked until it rested is thrown up by its ground at 0.78 s, lands at 1 s, and bounces from then on.
+fn thrown(restitution: f64) -> String {
+    format!(
+        "[time]\nend = '1.2 s'\n[ground]\nmotion = {{ acceleration = ['0 m/s^2', '18.737 m/s^2'], signal = 'jolt' }}\n\
+         [signal.jolt]\nshape = 'one-sine'\nfrequency = '3.32 Hz'\nstart = '0.7 s'\n\
+         [block.a]\ndensity = '2000 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.2202 m'\nheight = '0.2894 m'\non = 'ground'\nat = '0 m'\n\
+         tilt = '0.591 deg'\n[contact.c]\nbetween = ['*', '*']\nfriction = 0.5988\nrestitution = {restitution}\n"
+    )
+}
+
+/// What a block that rests is tilted by, it is still tilted by when it lands after a flight: flush, and flush again after a bounce.
+#[test]
+fn a_block_that_is_thrown_up_from_rest_lands_flush() {
+    // Where it rests it is tilted by what corners sink in, which grows as the step squared.
+    for (restitution, step, tilt) in
+        [(0.0, "1 ms", 2e-5), (0.3, "1 ms", 2e-5), (0.3, "250 us", 2e-6), (0.3, "3 ms", 2e-4)]
+    {
+        let (simulation, seen) = run(&thrown(restitution), step);
+        let [.., phi] = pose(&simulation, "a");
+        assert!(phi.abs() < tilt, "{restitution} {step}: {phi}, {:?}", seen.impacts);
+        let together = |pair: &[(f64, f64, f64)]| pair[0].0 == pair[1].0 && pair[0].0 > 0.9;
+        assert!(seen.impacts.windows(2).any(together), "{restitution} {step}: {:?}", seen.impacts);
+    }
+}
+
+/// A state in the middle of the flight holds all that the landing needs.
+#[test]
+fn a_flight_goes_on_from_its_state() {
+    let mut whole = simulation(&thrown(0.3), "1 ms");
+    let mut again = simulation(&thrown(0.3), "1 ms");
+    assert_eq!(whole.run_until(0.9, &mut []).unwrap(), Ended::Complete);
+    again.state = whole.state.clone();
+    for run in [&mut whole, &mut again] {
+        assert_eq!(run.run(&mut []).unwrap(), Ended::Complete);
+    }
+    assert_eq!((&whole.state.q, &whole.state.v), (&again.state.q, &again.state.v));
+    assert!(whole.state.q[2].abs() < 2e-5, "{:?}", whole.state.q);
 }

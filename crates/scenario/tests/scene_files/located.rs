@@ -32,12 +32,17 @@ pub(super) fn pose(simulation: &Simulation, name: &str) -> [f64; 3] {
     simulation.state.q[block.range.clone()].try_into().unwrap()
 }
 
-pub(super) fn run(scene: &str, step: &str) -> (Simulation, Seen) {
+/// A scene before its run with this step.
+pub(super) fn simulation(scene: &str, step: &str) -> Simulation {
     let sets = [("time.scheme", "moreau-jean-located"), ("time.step", step)];
     let sets: Vec<(String, String)> =
         sets.into_iter().map(|(key, value)| (key.to_owned(), format!("\"{value}\""))).collect();
     let resolved = teeter_scenario::load(scene.as_bytes(), "located", "located", &sets).unwrap();
-    let mut simulation = Simulation::new(&resolved.scene).unwrap();
+    Simulation::new(&resolved.scene).unwrap()
+}
+
+pub(super) fn run(scene: &str, step: &str) -> (Simulation, Seen) {
+    let mut simulation = simulation(scene, step);
     let mut seen = Seen::default();
     assert_eq!(simulation.run(&mut [&mut seen]).unwrap(), Ended::Complete);
     let ledger = &simulation.state.ledger;
