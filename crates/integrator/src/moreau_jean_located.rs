@@ -2,6 +2,7 @@
 
 mod drift;
 mod impact;
+mod jump;
 mod leave;
 mod locate;
 mod missed;
@@ -17,6 +18,7 @@ use crate::{
 };
 use drift::Flights;
 use impact::Strike;
+use jump::NextJump;
 use locate::Hit;
 pub(crate) use locate::rate_at;
 use teeter_contact::Outcome;
@@ -114,6 +116,9 @@ pub struct MoreauJeanLocated<const D: usize> {
     /// they did, as the state's memory holds them.
     lately: Vec<f64>,
     flights: Flights,
+    next_jump: NextJump,
+    /// Loads on either side of a time; memory.
+    beside: [Vec<f64>; 2],
     /// Which subsystems are elastic, and whether any is.
     elastic: Vec<bool>,
     has_elastic: bool,
@@ -162,6 +167,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
             stays: Vec::new(),
             lately: Vec::new(),
             flights: Flights::default(),
+            next_jump: NextJump::default(),
+            beside: [Vec::new(), Vec::new()],
             elastic: Vec::new(),
             has_elastic: true,
             has_rigid_pairs: true,
@@ -213,6 +220,8 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         let numbers = 3 * contacts + Flights::NUMBERS * flights;
         self.lately.reserve(numbers);
         self.flights.reserve(flights);
+        self.next_jump = NextJump::default();
+        self.beside.iter_mut().for_each(|loads| loads.reserve(model.size().v));
         self.by_forces.resize(model.size().v, 0.0);
         self.in_lowest_bounce.reserve(contacts.min(crate::stage::RESERVED_CONTACTS));
         self.v.resize(model.size().v, 0.0);
@@ -339,6 +348,13 @@ impl<const D: usize> MoreauJeanLocated<D> {
                     *by_forces = free - v0;
                 }
             }
+            let worth = |end: &f64| (end - from.t).min(span.end - end) > STEP_ROUNDING * span.h;
+            let jump = self.find_jump(model, &rest).filter(worth);
+            let rest = jump.map_or(rest, |end| StepSpan { end, h: end - from.t, ..rest });
+            if jump.is_some() {
+                self.step.begin(model, from, &rest, work)?;
+                self.step.of_step = rest.h / span.h;
+            }
             let too_many = impacts == Self::MOST_IMPACTS;
             self.unlocated |= too_many || !struck;
             let (outcome, found) = if too_many || !struck {
@@ -377,6 +393,10 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 let penetration = deepest(work);
                 self.take_part(model, from, &rest, outcome, work)?;
                 self.remember_lately(model, from, work);
+                if jump.is_some() {
+                    (left, struck) = (left - rest.h, true);
+                    continue;
+                }
                 return Ok(penetration);
             };
             // What rounding leaves of a step is nothing.

@@ -543,3 +543,19 @@ fn a_slide_that_stops_where_something_strikes_at_once_is_no_part_of_a_step() {
         assert!((x - 0.343_225).abs() < 2e-5, "{step}: {x}");
     }
 }
+
+/// Where a load jumps within a step, the block slides from then on, evenly accelerated, whatever the step.
+#[test]
+fn a_slide_that_a_jump_of_a_load_starts_begins_in_time() {
+    let scene = "[time]\nend = '0.3 s'\n[ground]\n[block.b]\ndensity = '700 kg/m^3'\nwidth = '20 cm'\nheight = '10 cm'\ndepth = '10 cm'\n\
+                 on = 'ground'\nat = '0 cm'\n[contact.c]\nbetween = ['b', 'ground']\nfriction = 0.3\n\
+                 [signal.s]\nshape = 'constant'\nstart = '100.35 ms'\n[force.f]\non = 'b'\nforce = ['6 N', '0 N']\nsignal = 's'";
+    let after = 0.3 - 0.100_35;
+    let exact = (6.0 / 1.4 - 0.3 * G) * after * after / 2.0;
+    for step in ["10 ms", "1 ms", "300 us"] {
+        let (simulation, seen) = run(scene, step);
+        let [x, ..] = pose(&simulation, "b");
+        assert!((x - exact).abs() < 1e-12, "{step}: {x} {exact}");
+        assert_eq!(seen.most_phases, 2, "{step}: one step is divided");
+    }
+}
