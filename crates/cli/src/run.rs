@@ -341,13 +341,6 @@ fn format_summary(summary: &Summary, folder: &Path, horizon: bool, report: bool)
     if summary.contact.unconverged_steps > 0 {
         text.push_str(&format!("  {} steps not solved to tolerance\n", summary.contact.unconverged_steps));
     }
-    // Of event-driven steps there was a warning.
-    if summary.unlocated_steps > 0 && summary.warnings.iter().all(|warning| warning.code != UNLOCATED) {
-        text.push_str(&format!(
-            "  {} had more impacts than are located: from there on the motion is as accurate as the step\n",
-            count(summary.unlocated_steps, "step")
-        ));
-    }
     // If it is earlier, there was a warning.
     if horizon && summary.warnings.iter().all(|warning| warning.code != HORIZON) {
         text.push_str("  horizon: with half the step, and with the initial state perturbed by 1e-12, the motion agrees within 1 % to the end\n");

@@ -14,3 +14,4 @@ mod sections;
 mod sizes;
 mod swings;
 mod table;
+mod unlocated;

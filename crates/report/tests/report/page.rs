@@ -83,7 +83,7 @@ pub(crate) fn panel<'d>(data: &'d Value, id: &str) -> Option<&'d Value> {
 }
 
 /// The value of `[data-summary="path"]`.
-fn shown<'a>(html: &'a str, path: &str) -> &'a str {
+pub(crate) fn shown<'a>(html: &'a str, path: &str) -> &'a str {
     let mark = format!("data-summary=\"{path}\" data-value=\"");
     let start = html.find(&mark).unwrap_or_else(|| panic!("{path}")) + mark.len();
     html[start..].split('"').next().unwrap()
