@@ -110,7 +110,7 @@
         id: `${key}-${k}`, contact: k, title: title + suffix, unit: `${prefix}N`, series: overTheRaw(lines, means), cut: springs ? undefined : cutOf(lines, least), floor: 0, least, height: 150,
       });
       const over = `means over ${forces.bucket}${strikes.length ? " without the impacts" : ""}`;
-      htmlElement("p", "note", means.length ? `Pale: ${over}. Strong: over ${forces.window}.` : `M${over.slice(1)}.`, byId(`panel-${key}-${k}`));
+      htmlElement("p", "note", means.length ? `Pale: ${over}. Strong: without vibrations of periods below ${forces.period}.` : `M${over.slice(1)}.`, byId(`panel-${key}-${k}`));
       if (sums) {
         htmlElement("p", "note", "The sum over the points: how those that stick share it, equilibrium leaves open. Their shares are in contacts.csv.", byId(`panel-${key}-${k}`));
       }

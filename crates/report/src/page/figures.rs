@@ -234,7 +234,7 @@ impl Plots<'_> {
     fn contact_forces(&self) -> Vec<(String, Figure)> {
         let scenery = &self.recorder.scenery;
         let borders = self.panels.curves.borders();
-        let window = means::window(&self.panels.curves);
+        let period = self.panels.period_of_contacts(self.recorder);
         let curves = &self.panels.forces;
         let strongest = curves.iter().flatten().flat_map(|forces| &forces.normal).fold(0.0, |most: f64, f| f.max(most));
         let mut pairs = Vec::new();
@@ -254,7 +254,7 @@ impl Plots<'_> {
                         .number(point)
                 };
                 // Springs make a force smooth, and without a beam nothing rings.
-                let mean = means::normal(&self.panels.curves, forces, window)
+                let mean = means::normal(&self.panels.curves, forces, period)
                     .filter(|_| contact.rings && !contact.has_duration);
                 // The raw values stay behind their mean, which then has the name.
                 normal.push(if mean.is_some() {
@@ -295,7 +295,8 @@ impl Plots<'_> {
                 let (range, cut) = if contact.has_duration { (None, None) } else { cut(&lines, least, &unit) };
                 let over = with_digits(self.panels.curves.longest_bucket(), "s", 2);
                 let meant = if what == "Normal" && means.iter().any(Option::is_some) {
-                    format!("pale: means over {over}; strong: over {}", with_digits(window, "s", 3))
+                    let period = with_digits(period, "s", 3);
+                    format!("pale: means over {over}; strong: without vibrations of periods below {period}")
                 } else {
                     format!("means over {over}{}", if impacts.is_empty() { "" } else { " without impacts" })
                 };

@@ -1,10 +1,19 @@
-//! The mean of a force over a window of time, beside its raw values: a beam that rings makes these a band in which the force that
-//! carries is not seen.
+//! A force without its fast vibrations, beside its raw values: a beam that rings makes these a band in which the force that carries is not
+//! seen.
+//!
+//! It is a weighted mean about each time, with the weights of a windowed sinc: what vibrates slower than the period told stays as large as it
+//! is, what vibrates faster goes. A mean of equal weights flattens a vibration of twice its window to 64 %, and lets some that are faster through.
 
 use super::curves::{Curves, ForceCurve};
 
-/// A window is this part of the run, rounded to 1, 2 or 5 times a power of ten.
+/// The longest period is this part of the run, rounded to 1, 2 or 5 times a power of ten.
 const PART: f64 = 1.0 / 40.0;
+
+/// The weights reach over this many periods on both sides: periods of 1.6 times the one told keep 99 % of their amplitude, those of 0.7 times lose 99 %.
+const REACH: f64 = 2.0;
+
+/// Where smoothing twice takes this part of what smoothing once has left, a vibration lies between those kept and those taken, and is made smaller.
+const BETWEEN: f64 = 0.05;
 
 /// Where raw values stray from the mean by less than this part of the largest mean, the mean would only cover them.
 const STRAY: f64 = 0.02;
@@ -12,43 +21,75 @@ const STRAY: f64 = 0.02;
 /// It has to do so for more than this part of the time in which the contact presses.
 const LEAST: f64 = 0.25;
 
-/// The window for a run of these curves, s.
-pub(super) fn window(curves: &Curves) -> f64 {
+/// The longest period that is taken for the border between fast and slow in a run of these curves, s.
+fn longest(curves: &Curves) -> f64 {
     let borders = curves.borders();
     let run = borders.last().copied().unwrap_or(0.0) - borders.first().copied().unwrap_or(0.0);
-    if !(run > 0.0) {
-        return 0.0;
-    }
-    let power = 10f64.powf((run * PART).log10().floor());
-    let digit = [5.0, 2.0, 1.0].into_iter().find(|digit| digit * power <= run * PART * (1.0 + 1e-9)).unwrap_or(1.0);
+    if run > 0.0 { rounded_down(run * PART) } else { 0.0 }
+}
+
+/// 1, 2 or 5 times a power of ten.
+fn rounded_down(x: f64) -> f64 {
+    let power = 10f64.powf(x.log10().floor());
+    let digit = [5.0, 2.0, 1.0].into_iter().find(|digit| digit * power <= x * (1.0 + 1e-9)).unwrap_or(1.0);
     digit * power
 }
 
-/// The stretches of time in which a contact presses, s, as indices of the borders at their ends: gaps shorter than the window belong to
+/// The period, s, that is the border between the fast vibrations of these quantities, given by their means over the buckets, and the slow ones: the
+/// longest one, or the next shorter one where vibrations lie about the longest, of which they would lose a part.
+pub(super) fn period(curves: &Curves, quantities: &[Vec<f64>]) -> f64 {
+    let (longest, borders) = (longest(curves), curves.borders());
+    if !(longest > 0.0) || !is_long(&borders) {
+        return longest;
+    }
+    let shorter = rounded_down(0.6 * longest);
+    let weights = Weights::new();
+    let whole = [[0, borders.len() - 1]];
+    // The variance that smoothing once more takes from all of them together, as a part of theirs.
+    let between = |period: f64| {
+        let (mut taken, mut all) = (0.0, 0.0);
+        for values in quantities {
+            let once = weights.over(&borders, values, period, &whole);
+            let inner: Vec<f64> = once.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
+            let twice = weights.over(&borders, &inner, period, &whole);
+            // Towards the ends of a run nothing is smoothed.
+            let mean = once.iter().sum::<f64>() / once.len() as f64;
+            taken += once.iter().zip(&twice).map(|(once, twice)| (once - twice).powi(2)).sum::<f64>();
+            all += once.iter().map(|once| (once - mean).powi(2)).sum::<f64>();
+        }
+        if all > 0.0 { (taken / all).sqrt() } else { 0.0 }
+    };
+    let of_longest = between(longest);
+    if of_longest > BETWEEN && 2.0 * between(shorter) < of_longest { shorter } else { longest }
+}
+
+/// The stretches of time in which a contact presses, s, as indices of the borders at their ends: gaps shorter than the period belong to
 /// them.
-fn touches(borders: &[f64], normal: &[f64], window: f64) -> Vec<[usize; 2]> {
+fn touches(borders: &[f64], normal: &[f64], period: f64) -> Vec<[usize; 2]> {
     let mut touches: Vec<[usize; 2]> = Vec::new();
     for (bucket, _) in normal.iter().enumerate().filter(|(_, force)| **force > 0.0) {
         match touches.last_mut() {
-            Some([_, end]) if borders[bucket] - borders[*end] < window => *end = bucket + 1,
+            Some([_, end]) if borders[bucket] - borders[*end] < period => *end = bucket + 1,
             _ => touches.push([bucket, bucket + 1]),
         }
     }
     touches
 }
 
-/// The means of the normal force over the window about the borders of the buckets, N: over what of the window lies in the run and in the
+/// The normal force at the borders of the buckets without vibrations of less than this period (s), N: from what lies in the run and in the
 /// stretch in which the contact touches. `None` where the raw values are as smooth.
-pub(super) fn normal(curves: &Curves, forces: &ForceCurve, window: f64) -> Option<Vec<f64>> {
+pub(super) fn normal(curves: &Curves, forces: &ForceCurve, period: f64) -> Option<Vec<f64>> {
     let borders = curves.borders();
-    if forces.normal.is_empty() || !is_long(&borders) || window <= 0.0 {
+    if forces.normal.is_empty() || !is_long(&borders) || period <= 0.0 {
         return None;
     }
     // Before it touches and after it has left there is no force, of which a mean beyond would make a ramp.
-    let touches = touches(&borders, &forces.normal, window);
-    let means = over(&borders, &forces.normal, window, &touches);
+    let touches = touches(&borders, &forces.normal, period);
+    let mut means = Weights::new().over(&borders, &forces.normal, period, &touches);
+    // Beside a jump the weights overshoot, but no contact pulls.
+    means.iter_mut().for_each(|mean| *mean = mean.max(0.0));
     let largest = means.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    // Of the time in which it presses: of one that only strikes now and then, a mean would make blocks as wide as the window.
+    // Of the time in which it presses: of one that only strikes now and then, a mean would make blocks as wide as the period.
     let pressing = || means.iter().zip(&forces.normal).filter(|(_, raw)| **raw > 0.0);
     let strays = pressing().filter(|(mean, raw)| (*mean - *raw).abs() > STRAY * largest).count();
     (strays as f64 > LEAST * pressing().count() as f64 && pressing().count() * 10 > means.len()).then_some(means)
@@ -57,58 +98,87 @@ pub(super) fn normal(curves: &Curves, forces: &ForceCurve, window: f64) -> Optio
 /// What rings within a bucket has a range larger by this than the change of the means from bucket to bucket.
 const RINGS: f64 = 3.0;
 
-/// Whether there are enough buckets for windows of several.
+/// Whether there are enough buckets for means over several.
 fn is_long(borders: &[f64]) -> bool {
     borders.len() * 2 >= 40
 }
 
-/// Means over windows about the borders of buckets, of a quantity with these means over the buckets, in stretches given by the borders at
-/// their ends: over as much of the window as the stretch has on both sides. 0 elsewhere.
-fn over(borders: &[f64], values: &[f64], window: f64, stretches: &[[usize; 2]]) -> Vec<f64> {
-    // The integral up to each border; between two, the quantity is constant.
-    let mut integrals = vec![0.0];
-    for (ends, value) in borders.windows(2).zip(values) {
-        integrals.push(integrals[integrals.len() - 1] + value * (ends[1] - ends[0]));
-    }
-    let integral = |t: f64| {
-        let bucket = borders.partition_point(|border| *border <= t).clamp(1, borders.len() - 1) - 1;
-        integrals[bucket] + values[bucket] * (t - borders[bucket])
-    };
-    let mut means = vec![0.0; borders.len()];
-    for [first, last] in stretches {
-        for place in *first..=*last {
-            let t = borders[place];
-            // Of one side alone it would lag or lead: towards an end the window becomes shorter on both sides.
-            let half = (0.5 * window).min(t - borders[*first]).min(borders[*last] - t);
-            let (from, to) = if half > 0.0 {
-                (t - half, t + half)
-            } else if place == *first {
-                (t, borders[place + 1])
-            } else {
-                (borders[place - 1], t)
-            };
-            means[place] = (integral(to) - integral(from)) / (to - from);
+/// Weights of a windowed sinc: their integral from the start of their reach, at equally spaced places of it.
+struct Weights(Vec<f64>);
+
+/// Places at which the integral is known.
+const PLACES: usize = 1024;
+
+impl Weights {
+    fn new() -> Self {
+        use std::f64::consts::PI;
+        let weight = |u: f64| {
+            let x = 2.0 * PI * REACH * u;
+            let sinc = if x == 0.0 { 1.0 } else { x.sin() / x };
+            sinc * 0.5 * (1.0 + (PI * u).cos())
+        };
+        let mut integrals = vec![0.0];
+        for place in 0..PLACES {
+            let middle = 2.0 * (place as f64 + 0.5) / PLACES as f64 - 1.0;
+            integrals.push(integrals[place] + weight(middle));
         }
+        let all = integrals[PLACES];
+        integrals.iter_mut().for_each(|integral| *integral /= all);
+        Self(integrals)
     }
-    means
+
+    /// The integral from the start of their reach to `u`, −1 at this start and 1 at the end.
+    fn up_to(&self, u: f64) -> f64 {
+        let at = (0.5 * (u + 1.0) * PLACES as f64).clamp(0.0, PLACES as f64);
+        let place = (at as usize).min(PLACES - 1);
+        self.0[place] + (at - place as f64) * (self.0[place + 1] - self.0[place])
+    }
+
+    /// Weighted means about the borders of buckets, of a quantity with these means over the buckets, in stretches given by the borders at
+    /// their ends: within as much of their reach as the stretch has on both sides. 0 elsewhere.
+    fn over(&self, borders: &[f64], values: &[f64], period: f64, stretches: &[[usize; 2]]) -> Vec<f64> {
+        let mut means = vec![0.0; borders.len()];
+        for [first, last] in stretches {
+            for place in *first..=*last {
+                let t = borders[place];
+                // Of one side alone it would lag or lead: towards an end the reach becomes shorter on both sides.
+                let half = (REACH * period).min(t - borders[*first]).min(borders[*last] - t);
+                means[place] = if half > 0.0 {
+                    let mut bucket = borders.partition_point(|border| *border <= t - half).max(1) - 1;
+                    let (mut sum, mut before) = (0.0, 0.0);
+                    while bucket < *last && borders[bucket] < t + half {
+                        let up_to = self.up_to((borders[bucket + 1] - t) / half);
+                        sum += values[bucket] * (up_to - before);
+                        (before, bucket) = (up_to, bucket + 1);
+                    }
+                    sum
+                } else if place == *first {
+                    values[place]
+                } else {
+                    values[place - 1]
+                };
+            }
+        }
+        means
+    }
 }
 
-/// The means of a quantity over the window about the borders of the buckets. `None` unless it rings: strays from its mean, and crosses
-/// it at least once in a window, on average. A slower vibration is seen as it is, and a mean would only flatten it.
-pub(super) fn ringing(curves: &Curves, column: usize, window: f64) -> Option<Vec<f64>> {
+/// A quantity at the borders of the buckets without vibrations of less than this period (s). `None` unless it rings: strays from what is
+/// left, and crosses it at least once in a period, on average. A slower vibration is seen as it is.
+pub(super) fn ringing(curves: &Curves, column: usize, period: f64) -> Option<Vec<f64>> {
     let borders = curves.borders();
-    if !is_long(&borders) || window <= 0.0 {
+    if !is_long(&borders) || period <= 0.0 {
         return None;
     }
-    let means = over(&borders, &curves.means(column), window, &[[0, borders.len() - 1]]);
+    let means = Weights::new().over(&borders, &curves.means(column), period, &[[0, borders.len() - 1]]);
     let largest = means.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let own = curves.means(column);
     // Two points of the curve lie in each bucket, after the one at the start.
     let values = curves.curve(column);
     let points = values[1..].chunks_exact(2).map(|pair| [pair[0], pair[1]]);
     let (mut far, mut crossings, mut above) = (0, 0, None);
-    for (k, (pair, windows)) in points.zip(means.windows(2)).enumerate() {
-        let mean = 0.5 * (windows[0] + windows[1]);
+    for (k, (pair, ends)) in points.zip(means.windows(2)).enumerate() {
+        let mean = 0.5 * (ends[0] + ends[1]);
         far += usize::from(pair.iter().any(|x| (x - mean).abs() > STRAY * largest));
         let now = own[k] > mean;
         crossings += usize::from(above.is_some_and(|before: bool| before != now));
@@ -118,8 +188,8 @@ pub(super) fn ringing(curves: &Curves, column: usize, window: f64) -> Option<Vec
         let drift = change(own.get(k + 1)).max(change(k.checked_sub(1).and_then(|before| own.get(before))));
         crossings += 2 * usize::from((pair[1] - pair[0]).abs() > RINGS * drift.max(STRAY * largest));
     }
-    let windows = (borders[borders.len() - 1] - borders[0]) / window;
-    (far as f64 > LEAST * own.len() as f64 && crossings as f64 >= windows).then_some(means)
+    let periods = (borders[borders.len() - 1] - borders[0]) / period;
+    (far as f64 > LEAST * own.len() as f64 && crossings as f64 >= periods).then_some(means)
 }
 
 #[cfg(test)]
@@ -143,9 +213,9 @@ mod tests {
     fn the_mean_is_the_force_that_carries() {
         // 3.1 N with 1 N of ringing at 400 Hz.
         let (curves, forces) = run(|t| 3.1 + (2.0 * std::f64::consts::PI * 400.0 * t).sin());
-        let window = window(&curves);
-        assert!((window - 0.02).abs() < 1e-12, "{window}");
-        let means = normal(&curves, &forces, window).unwrap();
+        let period = period(&curves, std::slice::from_ref(&forces.normal));
+        assert!((period - 0.02).abs() < 1e-12, "{period}");
+        let means = normal(&curves, &forces, period).unwrap();
         assert!(means.iter().skip(20).rev().skip(20).all(|mean| (mean - 3.1).abs() < 0.1));
         assert_eq!(means.len(), curves.borders().len());
     }
@@ -154,7 +224,7 @@ mod tests {
     fn there_is_no_mean_before_a_contact_touches_or_after_it_has_left() {
         let ringing = |t: f64| 3.1 + (2.0 * std::f64::consts::PI * 400.0 * t).sin();
         let (curves, forces) = run(|t| if (0.3..0.7).contains(&t) { ringing(t) } else { 0.0 });
-        let means = normal(&curves, &forces, window(&curves)).unwrap();
+        let means = normal(&curves, &forces, longest(&curves)).unwrap();
         for (mean, t) in means.iter().zip(curves.borders()) {
             // To a bucket of two steps.
             let expected = if (0.296..=0.704).contains(&t) { 2.5..=3.7 } else { 0.0..=0.0 };
@@ -171,7 +241,7 @@ mod tests {
             k if k % 35 == 0 => 500.0,
             _ => 0.0,
         });
-        assert_eq!(normal(&curves, &forces, window(&curves)), None);
+        assert_eq!(normal(&curves, &forces, longest(&curves)), None);
     }
 
     #[test]
@@ -180,8 +250,7 @@ mod tests {
             let reaction = |t: f64| 75.0 + 500.0 * (2.0 * std::f64::consts::PI * frequency * t).sin();
             let mut curves = Curves::new(capacity, 0.0, vec![reaction(0.0)], 0);
             (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[reaction(t)]));
-            let window = window(&curves);
-            ringing(&curves, 0, window)
+            ringing(&curves, 0, longest(&curves))
         };
         // In buckets of two steps, and of 64.
         for capacity in [10_000, 400] {
@@ -193,18 +262,52 @@ mod tests {
         }
     }
 
+    /// The amplitude that is left of a slow vibration of this frequency, of 5 under 4 of 400 Hz in 1 s, without the ends of the run; and the period.
+    fn left_of(slow: f64) -> (f64, f64) {
+        let tau = 2.0 * std::f64::consts::PI;
+        let moment = |t: f64| 9.0 + 5.0 * (tau * slow * t).sin() + 4.0 * (tau * 400.0 * t).sin();
+        let mut curves = Curves::new(10_000, 0.0, vec![moment(0.0)], 0);
+        (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[moment(t)]));
+        let period = period(&curves, &[curves.means(0)]);
+        let means = ringing(&curves, 0, period).unwrap();
+        let inner = &means[means.len() / 8..means.len() * 7 / 8];
+        let (low, high) = inner.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
+        (0.5 * (high - low) / 5.0, period)
+    }
+
+    #[test]
+    fn a_slow_vibration_under_what_rings_keeps_its_size() {
+        // A running mean over 20 ms leaves 86, 64 and 0 % of those of 15, 25 and 50 Hz.
+        for slow in [2.0, 15.0, 25.0, 40.0, 50.0, 60.0] {
+            let (left, period) = left_of(slow);
+            assert!((left - 1.0).abs() < 0.03, "{slow} Hz: {left} at {period} s");
+        }
+        assert_eq!([left_of(15.0).1, left_of(50.0).1], [0.02, 0.01], "about the border of fast and slow it moves");
+    }
+
+    #[test]
+    fn what_rings_in_many_frequencies_has_a_mean() {
+        let tau = 2.0 * std::f64::consts::PI;
+        let reaction = |t: f64| {
+            75.0 + (1..40).map(|k| 20.0 * (tau * 13.7 * f64::from(k) * t + f64::from(k * k)).sin()).sum::<f64>()
+        };
+        let mut curves = Curves::new(10_000, 0.0, vec![reaction(0.0)], 0);
+        (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[reaction(t)]));
+        assert!(ringing(&curves, 0, period(&curves, &[curves.means(0)])).is_some());
+    }
+
     #[test]
     fn at_the_ends_of_a_run_the_mean_neither_leads_nor_lags() {
         let rising = |t: f64| 100.0 * t + 20.0 * (2.0 * std::f64::consts::PI * 400.0 * t).sin();
         let mut curves = Curves::new(10_000, 0.0, vec![rising(0.0)], 0);
         (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[rising(t)]));
-        let means = ringing(&curves, 0, window(&curves)).unwrap();
+        let means = ringing(&curves, 0, longest(&curves)).unwrap();
         assert!(means[0].abs() < 4.0, "{}", means[0]);
     }
 
     #[test]
     fn a_smooth_force_has_no_mean_beside_it() {
         let (curves, forces) = run(|t| 3.0 + t);
-        assert_eq!(normal(&curves, &forces, window(&curves)), None);
+        assert_eq!(normal(&curves, &forces, longest(&curves)), None);
     }
 }

@@ -3,6 +3,7 @@
 
 use super::content::{LeftOut, largest};
 use super::curves::{Curves, ForceCurve};
+use super::means;
 use super::recorder::{NUMBERS, PageRecorder};
 use super::redundant::{Redundant, redundant};
 use super::scenery::ContactDrawn;
@@ -209,6 +210,14 @@ impl Panels {
     /// of many ways, which would be drawn as jumps between its feet.
     pub(crate) fn sums_tangential(&self, pair: usize) -> bool {
         self.redundant[pair].shares
+    }
+
+    /// The border between fast and slow vibrations of the normal forces that are drawn without the fast ones, s.
+    pub(crate) fn period_of_contacts(&self, recorder: &PageRecorder) -> f64 {
+        let ringing = recorder.scenery.contacts.iter().filter(|contact| contact.rings && !contact.has_duration);
+        let points = ringing.flat_map(|contact| &self.forces[contact.first..contact.first + contact.points.len()]);
+        let normal: Vec<Vec<f64>> = points.flatten().map(|forces| forces.normal.clone()).collect();
+        means::period(&self.curves, &normal)
     }
 
     /// The tangential force of a contact over all its points, N, by buckets.

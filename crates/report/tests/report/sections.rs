@@ -214,7 +214,7 @@ fn reactions_that_ring_are_pale_behind_their_means() {
     assert_eq!([raw.len(), means.len()], [4, 4]);
     assert_eq!(series.iter().position(|line| line["raw"] != true), Some(4), "what is pale lies behind");
     assert!(means.iter().all(|line| line["label"] != "" && line["at_borders"] == true));
-    assert_eq!(reactions["note"], "pale: all steps; strong: means over 10 ms");
+    assert_eq!(reactions["note"], "pale: all steps; strong: without vibrations of periods below 10 ms");
     let range =
         |lines: &[&Value]| lines.iter().flat_map(|line| numbers(&line["y"])).fold(0.0_f64, |most, y| most.max(y.abs()));
     assert!(range(&raw) > 2.0 * range(&means), "{} {}", range(&raw), range(&means));
@@ -228,7 +228,7 @@ fn reactions_that_ring_are_pale_behind_their_means() {
     let reactions = panel(&slow, "section-reaction").unwrap()["series"].as_array().unwrap();
     assert!(reactions.iter().all(|line| line["raw"] != true) && reactions.len() == 3);
     let svg = run.figures.iter().find(|(file, _)| file == "section_forces.svg").unwrap().1.as_str();
-    assert!(svg.contains("strong: means over 10 ms"));
+    assert!(svg.contains("strong: without vibrations of periods below 10 ms"));
 }
 
 #[test]

@@ -145,8 +145,8 @@ pub(super) struct ForceData {
     borders: Vec<f64>,
     /// Of the units in which normal and tangential forces are plotted, by contacts: the prefix, and by what N are multiplied.
     units: Vec<[(&'static str, f64); 2]>,
-    /// Length of the windows of `mean`, with its unit.
-    window: String,
+    /// The period of the vibrations of which `mean` has only the slower ones, with its unit.
+    period: String,
     /// The longest time whose mean a force is, with its unit.
     bucket: String,
     /// The unit of `impacts`: the prefix, and by what N s are multiplied.
@@ -173,7 +173,7 @@ struct PointForces {
     contact: usize,
     point: usize,
     normal: Column,
-    /// The mean of `normal` over windows about the borders, where it differs.
+    /// `normal` without fast vibrations, at the borders, where it differs.
     #[serde(skip_serializing_if = "Option::is_none")]
     mean: Option<Column>,
     tangential: Column,
@@ -228,7 +228,7 @@ pub(super) fn portraits(panels: &Panels) -> Vec<PortraitData> {
 }
 
 pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
-    let window = means::window(&panels.curves);
+    let period = panels.period_of_contacts(recorder);
     let contacts = recorder.scenery.contacts.iter().enumerate();
     let all = contacts.flat_map(|(contact, drawn)| (0..drawn.points.len()).map(move |point| (contact, drawn, point)));
     let points = all.filter_map(|(contact, drawn, point)| {
@@ -242,7 +242,7 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
             contact,
             point,
             normal: Column::of(&forces.normal, SEEN_BELOW_PEAKS),
-            mean: means::normal(&panels.curves, forces, window)
+            mean: means::normal(&panels.curves, forces, period)
                 .filter(|_| drawn.rings && !drawn.has_duration)
                 .map(|means| Column::of(&means, SEEN)),
             tangential: Column::of(&forces.tangential, SEEN_BELOW_PEAKS),
@@ -253,7 +253,7 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
     ForceData {
         borders: panels.curves.borders().into_iter().map(time).collect(),
         units: panels.force_units.clone(),
-        window: with_digits(window, "s", 3),
+        period: with_digits(period, "s", 3),
         bucket: with_digits(panels.curves.longest_bucket(), "s", 2),
         impulse_unit: panels.impulse_unit,
         springs: (0..recorder.scenery.contacts.len())

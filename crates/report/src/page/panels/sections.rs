@@ -52,18 +52,24 @@ impl Panels {
                 Kind::Moment | Kind::ReactionCouple => (Measure::Moment, "", 1.0),
                 _ => (Measure::Force, "", 1.0),
             };
-            let window = means::window(&self.curves);
+            // A stress is a size, without a sign: the mean of what alternates would be no force that carries.
+            let means: Vec<Vec<f64>> = if kind == Kind::Stress {
+                Vec::new()
+            } else {
+                drawn.iter().map(|(column, ..)| self.curves.means(*column)).collect()
+            };
+            let period = means::period(&self.curves, &means);
             let (mut lines, mut over) = (Vec::new(), Vec::new());
             for (column, label, number, _) in drawn {
-                // A stress is a size, without a sign: the mean of what alternates would be no force that carries.
-                let mean = if kind == Kind::Stress { None } else { means::ringing(&self.curves, column, window) };
+                let mean = if kind == Kind::Stress { None } else { means::ringing(&self.curves, column, period) };
                 let is_raw = mean.is_some();
                 let name = if is_raw { String::new() } else { label.clone() };
                 lines.push(Line { is_raw, ..Line::of(&self.curves, column, factor, name, number) });
                 over.extend(mean.map(|y| Line { label, number, y, is_raw: false, of: None }));
             }
-            let note = (!over.is_empty())
-                .then(|| format!("pale: all steps; strong: means over {}", with_digits(window, "s", 3)));
+            let note = (!over.is_empty()).then(|| {
+                format!("pale: all steps; strong: without vibrations of periods below {}", with_digits(period, "s", 3))
+            });
             lines.extend(over);
             // What is pale stays behind all else.
             lines.sort_by_key(|line| if line.is_raw { (0, 0) } else { (1, line.number) });
