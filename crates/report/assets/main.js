@@ -129,6 +129,12 @@
       bands: points.map((point) => ({ short: several ? contact.points[point.point].short : contact.points[point.point].label.replace("bottom ", ""), name: several ? contact.points[point.point].label : undefined, state: point.state })),
       height: plots.margin.top + plots.margin.bottom + plots.rowHeight * points.length,
     });
+    const [, unseen] = forces.unseen_slip?.find(([of]) => of === k) ?? [];
+    const notes = [
+      points.some(({ state }) => state.includes("b")) ? "Presses briefly: in at most half of the steps, as what strikes or chatters." : "",
+      unseen ? `Slip of less than ${unseen} at a time is drawn as sticking.` : "",
+    ].filter(Boolean);
+    if (notes.length) htmlElement("p", "note", notes.join(" "), byId(`panel-state-${k}`));
   });
 
   if (scenery.hidden_points > 0 || scenery.unlisted) {

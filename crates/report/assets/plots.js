@@ -49,7 +49,8 @@ const plots = (() => {
       svgElement("path", { d: "M0 4h18", class: "guide" }, swatch);
       panel.guideKey.append("critical angle");
     }
-    for (const [className, word] of panel.bands ? [["stick", "stick"], ["slip", "slip"], ["open", "open"]] : []) {
+    for (const [className, word] of panel.bands ? [["stick", "stick"], ["slip", "slip"], ["briefly", "presses briefly"], ["open", "open"]] : []) {
+      if (className === "briefly" && !panel.bands.some(({ state }) => state.includes("b"))) continue;
       const key = htmlElement("span", "key", undefined, legend);
       htmlElement("i", className, undefined, key);
       key.append(word);
@@ -288,7 +289,7 @@ const plots = (() => {
       for (let i = 1; i <= band.state.length; i++) {
         if (i < band.state.length && band.state[i] === band.state[from]) continue;
         const [a, b] = [px(forces.borders[from]), px(forces.borders[i])];
-        const name = { k: "stick", l: "slip" }[band.state[from]];
+        const name = { k: "stick", l: "slip", b: "briefly" }[band.state[from]];
         if (name && b >= margin.left && a <= size.width) {
           body += `<rect class="${name}" x="${a.toFixed(2)}" y="${y}" width="${Math.max(b - a, 1.2).toFixed(2)}" height="12"/>`;
         }

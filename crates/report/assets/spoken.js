@@ -29,9 +29,9 @@ const spoken = (() => {
   /** How much of the time a contact sticks, slips, is open. */
   function ofBand({ short, state }) {
     const share = (letter) => [...state].filter((one) => one === letter).length / Math.max(1, state.length);
-    const [stick, slip] = [share("k"), share("l")];
+    const [stick, slip, briefly] = [share("k"), share("l"), share("b")];
     const percent = (part) => `${Math.round(100 * part)} %`;
-    return `${short}: sticks ${percent(stick)}, slips ${percent(slip)}, is open ${percent(1 - stick - slip)} of the time`;
+    return `${short}: sticks ${percent(stick)}, slips ${percent(slip)}, ${briefly ? `presses now and then ${percent(briefly)}, ` : ""}is open ${percent(1 - stick - slip - briefly)} of the time`;
   }
 
   function ofPortrait({ label, x, y }, { xName, xUnit, title, unit }) {

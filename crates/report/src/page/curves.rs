@@ -5,8 +5,10 @@
 //! two steps a bucket that is the curve itself, beyond that its envelope, from which no peak is missing.
 
 mod extremes;
+mod forces;
 
 use extremes::Extremes;
+pub(crate) use forces::{Does, ForceCurve};
 use serde::{Deserialize, Serialize};
 use teeter_integrator::ContactState;
 
@@ -61,6 +63,10 @@ impl Work {
         };
         sum[0] += impulse[0];
         sum[1] += impulse[1];
+        self.count(state);
+    }
+
+    fn count(&mut self, state: ContactState) {
         match state {
             ContactState::Open => {}
             ContactState::Stick => self.sticking += 1,
@@ -97,40 +103,6 @@ pub(crate) struct Curves {
     contacts: usize,
     /// `contacts` a bucket.
     works: Vec<Work>,
-}
-
-/// A contact point over time, a value a bucket.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ForceCurve {
-    /// Mean normal force, N, without the steps in which there were impacts, unless there are no others.
-    pub(crate) normal: Vec<f64>,
-    /// Mean tangential force, N, alike.
-    pub(crate) tangential: Vec<f64>,
-    /// Tangential displacement while it pressed, from the start to the end of the bucket, m.
-    pub(crate) slip: Vec<f64>,
-    /// The state in most of the steps in which it presses, however few these are.
-    pub(crate) state: Vec<ContactState>,
-    /// The state in most of the steps, of those in which it is open, too.
-    pub(crate) usual: Vec<ContactState>,
-    /// The largest normal impulse in a step with an impact, N·s; empty without any.
-    pub(crate) impacts: Vec<f64>,
-}
-
-impl ForceCurve {
-    /// Takes slip that is nothing but rounding, in all of a stretch in which the contact slips no more than that (m), for sticking.
-    pub(crate) fn stick_within(&mut self, rounding: f64) {
-        let mut from = 0;
-        while from < self.state.len() {
-            let slips = |k: &usize| self.state.get(*k) == Some(&ContactState::Slip);
-            let to = (from..).find(|k| !slips(k)).unwrap_or(from);
-            let before = |k: usize| if k == 0 { 0.0 } else { self.slip[k - 1] };
-            let slipped: f64 = (from..to).map(|k| (self.slip[k] - before(k)).abs()).sum();
-            if !(slipped > rounding) {
-                self.state[from..to].fill(ContactState::Stick);
-            }
-            from = to + 1;
-        }
-    }
 }
 
 impl Curves {
@@ -188,6 +160,15 @@ impl Curves {
         let newest = self.works.len().saturating_sub(self.contacts);
         if let Some(work) = self.works[newest..].get_mut(contact) {
             work.enter(impulse, of, state, slip);
+        }
+    }
+
+    /// Counts what a contact does in most of the step entered last.
+    #[inline]
+    pub(crate) fn count(&mut self, contact: usize, state: ContactState) {
+        let newest = self.works.len().saturating_sub(self.contacts);
+        if let Some(work) = self.works[newest..].get_mut(contact) {
+            work.count(state);
         }
     }
 
@@ -316,7 +297,8 @@ impl Curves {
             works().zip(&self.buckets).map(of_bucket).collect()
         };
         let state = works().map(|work| match (work.sticking, work.slipping) {
-            (0, 0) => ContactState::Open,
+            // Where it presses at instants only, or for less than half of each step, what it does there isn't known.
+            (0, 0) if work.impulse == [0.0; 2] && work.struck == [0.0; 2] => ContactState::Open,
             (sticking, slipping) if sticking >= slipping => ContactState::Stick,
             _ => ContactState::Slip,
         });
@@ -328,7 +310,8 @@ impl Curves {
         let slip = works().map(|work| work.slip).collect();
         let strikes = works().any(|work| work.hardest > 0.0);
         let impacts = if strikes { works().map(|work| work.hardest).collect() } else { Vec::new() };
-        Some(ForceCurve { normal: mean(0), tangential: mean(1), slip, state, usual, impacts })
+        let (normal, tangential) = (mean(0), mean(1));
+        Some(ForceCurve { normal, tangential, slip, state, usual, impacts, hides_slip: false })
     }
 }
 
@@ -423,6 +406,23 @@ mod tests {
     }
 
     #[test]
+    fn an_instant_is_a_brief_touch_and_what_presses_in_most_steps_is_none() {
+        let mut curves = Curves::new(4, 0.0, vec![], 1);
+        for k in 1..=32 {
+            curves.enter(f64::from(k), &[]);
+            match k {
+                // An impact between two steps, in which it is open.
+                12 => curves.add(0, [1.0, 0.0], Of::Impact { lasting: 0.0 }, ContactState::Open, 0.0),
+                17.. => curves.add(0, [1.0, 0.0], Of::Force, ContactState::Slip, 1.0),
+                _ => {}
+            }
+        }
+        let forces = curves.forces(0).unwrap();
+        let does: Vec<Does> = (0..4).map(|bucket| forces.does(bucket)).collect();
+        assert_eq!(does, [Does::Open, Does::Briefly, Does::Slip, Does::Slip]);
+    }
+
+    #[test]
     fn an_impact_is_an_impulse_and_no_force() {
         // 3 N, but for an impact of 50 N·s in every 100th step of 1 s; with buckets of 8 to 512 steps.
         for steps in [100, 1000, 4000] {
@@ -456,28 +456,7 @@ mod tests {
         }
         let forces = curves.forces(0).unwrap();
         assert!(forces.state.iter().all(|state| *state == ContactState::Stick));
-        assert!(forces.usual.iter().all(|state| *state == ContactState::Open));
-    }
-
-    #[test]
-    fn slip_of_rounding_is_sticking_and_a_short_slide_is_not() {
-        use ContactState::{Open, Slip, Stick};
-        let of = |slip: [f64; 6]| {
-            let mut forces = ForceCurve {
-                normal: vec![1.0; 6],
-                tangential: vec![0.0; 6],
-                slip: slip.to_vec(),
-                state: vec![Slip, Slip, Open, Stick, Slip, Slip],
-                usual: Vec::new(),
-                impacts: Vec::new(),
-            };
-            forces.stick_within(1e-9);
-            forces.state
-        };
-        assert_eq!(of([1e-10, 2e-10, 2e-10, 2e-10, 3e-10, 4e-10]), [Stick, Stick, Open, Stick, Stick, Stick]);
-        assert_eq!(of([0.0, 0.0, 0.0, 0.0, 1e-3, 2e-3]), [Stick, Stick, Open, Stick, Slip, Slip]);
-        // To and fro it comes back to where it was, but has slipped.
-        assert_eq!(of([1e-3, 0.0, 0.0, 0.0, 0.0, 0.0]), [Slip, Slip, Open, Stick, Stick, Stick]);
+        assert!((0..forces.state.len()).all(|bucket| forces.does(bucket) == Does::Briefly));
     }
 
     #[test]

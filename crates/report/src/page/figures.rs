@@ -4,12 +4,12 @@ use super::accelerograms;
 use super::bands::BAND_COLUMNS;
 use super::content::largest;
 use super::crowd::CrowdCurve;
+use super::curves::{Does, ForceCurve};
 use super::drawings;
 use super::panels::{Panels, Place, Portrait, PortraitLine, TimePanel, cut_at, prefix, time_unit};
 use super::recorder::{MANY_IMPACTS, PageRecorder};
 use super::{means, span};
 use crate::{shortest, with_digits};
-use teeter_integrator::ContactState;
 use teeter_plot::{Axis, Band, Colour, Figure, Legend, Panel, Series};
 
 /// File names and SVG text of the figures that the scene has, of the width that it asks for. Over time: `x.svg`, `y.svg`, `phi.svg`
@@ -86,6 +86,7 @@ pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
 /// Colours of sticking and slipping; an open contact has none.
 const STICK: Colour = Colour::Series(5);
 const SLIP: Colour = Colour::Series(1);
+const BRIEFLY: Colour = Colour::Guide;
 
 /// Least range of angles (°) and angular velocities (rad/s).
 const STILL: f64 = 2e-3;
@@ -240,7 +241,7 @@ impl Plots<'_> {
         let mut pairs = Vec::new();
         for (pair, contact) in scenery.contacts.iter().enumerate() {
             let (mut normal, mut means, mut tangential, mut bands) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-            let mut impacts = Vec::new();
+            let (mut impacts, mut briefly) = (Vec::new(), false);
             let sums = self.panels.sums_tangential(pair);
             // Colours are for those that touch: of all there would be too many.
             let touching = contact.points.iter().zip(&curves[contact.first..]);
@@ -274,7 +275,8 @@ impl Plots<'_> {
                 if !forces.impacts.is_empty() {
                     impacts.push(step(&forces.impacts, self.panels.impulse_unit.1, label));
                 }
-                bands.push(Band::new(label, stretches(&borders, &forces.state)));
+                bands.push(Band::new(label, stretches(&borders, forces)));
+                briefly |= (0..forces.state.len()).any(|bucket| forces.does(bucket) == Does::Briefly);
             }
             if normal.is_empty() {
                 continue;
@@ -313,7 +315,8 @@ impl Plots<'_> {
                 let y = Axis::around(label, values(&impacts).chain([0.0]), 1e-300);
                 panels.push(Panel::new(y).with(impacts).telling_apart().note(name));
             }
-            panels.push(Panel::bands(bands, [(STICK, "stick"), (SLIP, "slip"), (Colour::Paper, "open")]));
+            let key = [(STICK, "stick"), (SLIP, "slip"), (BRIEFLY, "presses briefly"), (Colour::Paper, "open")];
+            panels.push(Panel::bands(bands, key.into_iter().filter(|(colour, _)| briefly || *colour != BRIEFLY)));
             pairs.push((pair, weight, panels));
         }
         self.by_pairs("contact_forces", "Contact forces on the blocks over time", pairs)
@@ -383,13 +386,14 @@ fn values<'a>(lines: impl IntoIterator<Item = &'a Series>) -> impl Iterator<Item
 }
 
 /// Neighbours in one state as one stretch; the open ones left out.
-fn stretches(borders: &[f64], states: &[ContactState]) -> Vec<(f64, f64, Colour)> {
+fn stretches(borders: &[f64], forces: &ForceCurve) -> Vec<(f64, f64, Colour)> {
     let mut stretches: Vec<(f64, f64, Colour)> = Vec::new();
-    for (ends, state) in borders.windows(2).zip(states) {
-        let colour = match state {
-            ContactState::Open => continue,
-            ContactState::Stick => STICK,
-            ContactState::Slip => SLIP,
+    for (bucket, ends) in borders.windows(2).enumerate() {
+        let colour = match forces.does(bucket) {
+            Does::Open => continue,
+            Does::Briefly => BRIEFLY,
+            Does::Stick => STICK,
+            Does::Slip => SLIP,
         };
         match stretches.last_mut() {
             Some(last) if last.1 == ends[0] && last.2 == colour => last.1 = ends[1],

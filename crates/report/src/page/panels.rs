@@ -14,6 +14,7 @@ mod motion;
 mod sections;
 mod units;
 
+pub(crate) use forces::unseen_slip;
 use units::contact_sizes;
 pub(crate) use units::{Measure, Unit, Units, cut_at, length_unit, prefix, time_unit};
 

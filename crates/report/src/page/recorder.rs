@@ -15,7 +15,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
 use teeter_integrator::{
-    Active, Closing, ClosingMonitor, Contact, Model, Observer, ObserverError, PhaseKind, State, StepReport,
+    Active, Closing, ClosingMonitor, Contact, ContactState, Model, Observer, ObserverError, PhaseKind, State,
+    StepReport,
 };
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
@@ -150,6 +151,9 @@ pub struct PageRecorder {
     closed: Vec<Closed>,
     /// By blocks: whether they feel the impacts of a step. Memory.
     struck: Vec<bool>,
+    /// By contact points: for how long of a step they stick and slip, s; and those that do. Memory.
+    lasting: Vec<[f64; 2]>,
+    pressing: Vec<usize>,
 }
 
 impl PageRecorder {
@@ -199,6 +203,8 @@ impl PageRecorder {
             closings: ClosingMonitor::default(),
             closed: Vec::new(),
             struck: Vec::new(),
+            lasting: vec![[0.0; 2]; points],
+            pressing: Vec::new(),
             scenery,
         }
     }
@@ -317,9 +323,26 @@ impl PageRecorder {
                 // Springs give the force of an impact its course.
                 let of = if strikes && !drawn.has_duration { Of::Impact { lasting: part.duration } } else { Of::Force };
                 let slip = slip(contact, part.duration, part.balance);
-                self.kept.curves.add(drawn.first + point, [contact.p[0], contact.p[1]], of, contact.state(), slip);
+                let (point, state) = (drawn.first + point, contact.state());
+                self.kept.curves.add(point, [contact.p[0], contact.p[1]], of, ContactState::Open, slip);
+                if let Some(lasting) = self.lasting.get_mut(point).filter(|_| state != ContactState::Open) {
+                    self.pressing.extend((*lasting == [0.0; 2]).then_some(point));
+                    lasting[usize::from(state == ContactState::Slip)] += part.duration;
+                }
             }
         }
+        // An instant, or a fraction of a step, isn't what it does in the step.
+        let half = 0.5 * (step.t_end - step.t_start);
+        for point in &self.pressing {
+            let [sticking, slipping] = self.lasting[*point];
+            if sticking + slipping > half {
+                let state = if sticking >= slipping { ContactState::Stick } else { ContactState::Slip };
+                self.kept.curves.count(*point, state);
+            }
+            // Listed once more if instants came first.
+            self.lasting[*point] = [0.0; 2];
+        }
+        self.pressing.clear();
     }
 
     /// The blocks of a contact whose motion isn't prescribed.

@@ -2,12 +2,12 @@
 
 use super::column::{Column, SEEN, SEEN_BELOW_PEAKS};
 use super::{digits, time};
-use crate::page::means;
-use crate::page::panels::{Line, Panels, Place};
+use crate::page::curves::Does;
+use crate::page::panels::{Line, Panels, Place, unseen_slip};
 use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, BLOCK_FRAME, PageRecorder};
+use crate::page::scenery::ContactDrawn;
 use crate::with_digits;
 use serde::Serialize;
-use teeter_integrator::ContactState;
 
 /// A plot over time.
 #[derive(Serialize)]
@@ -165,6 +165,9 @@ pub(super) struct ForceData {
     /// Contacts whose points share their tangential force in one of many ways, of which the sum over the points is plotted.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     shares: Vec<usize>,
+    /// Contacts that slip by so little in a stretch that it is drawn as sticking, with the most of it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    unseen_slip: Vec<(usize, String)>,
     points: Vec<PointForces>,
 }
 
@@ -180,7 +183,7 @@ struct PointForces {
     /// The largest normal impulse of an impact, N s.
     #[serde(skip_serializing_if = "Option::is_none")]
     impacts: Option<Column>,
-    /// A letter a value: `o` open, `k` stick, `l` slip.
+    /// A letter a value: `o` open, `b` presses briefly, `k` stick, `l` slip.
     state: String,
 }
 
@@ -233,16 +236,17 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
     let all = contacts.flat_map(|(contact, drawn)| (0..drawn.points.len()).map(move |point| (contact, drawn, point)));
     let points = all.filter_map(|(contact, drawn, point)| {
         let forces = panels.forces[drawn.first + point].as_ref()?;
-        let state = forces.state.iter().map(|state| match state {
-            ContactState::Open => 'o',
-            ContactState::Stick => 'k',
-            ContactState::Slip => 'l',
+        let state = (0..forces.state.len()).map(|bucket| match forces.does(bucket) {
+            Does::Open => 'o',
+            Does::Briefly => 'b',
+            Does::Stick => 'k',
+            Does::Slip => 'l',
         });
         Some(PointForces {
             contact,
             point,
             normal: Column::of(&forces.normal, SEEN_BELOW_PEAKS),
-            mean: means::normal(&panels.curves, forces, period)
+            mean: crate::page::means::normal(&panels.curves, forces, period)
                 .filter(|_| drawn.rings && !drawn.has_duration)
                 .map(|means| Column::of(&means, SEEN)),
             tangential: Column::of(&forces.tangential, SEEN_BELOW_PEAKS),
@@ -250,6 +254,10 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
             state: state.collect(),
         })
     });
+    let hides = |drawn: &ContactDrawn| {
+        panels.forces[drawn.first..drawn.first + drawn.points.len()].iter().flatten().any(|forces| forces.hides_slip)
+    };
+    let hiding = recorder.scenery.contacts.iter().enumerate().filter(|(_, drawn)| hides(drawn));
     ForceData {
         borders: panels.curves.borders().into_iter().map(time).collect(),
         units: panels.force_units.clone(),
@@ -263,6 +271,7 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         frictionless: (0..panels.tangential.len()).filter(|pair| !panels.tangential[*pair]).collect(),
         redundant: (0..panels.redundant.len()).filter(|pair| panels.redundant[*pair].forces).collect(),
         shares: (0..panels.redundant.len()).filter(|pair| panels.sums_tangential(*pair)).collect(),
+        unseen_slip: hiding.map(|(pair, drawn)| (pair, with_digits(unseen_slip(recorder, drawn), "m", 1))).collect(),
         points: points.collect(),
     }
 }

@@ -3,6 +3,7 @@
 use super::{ForceCurve, Line, Measure, Panels, Place, TimePanel};
 use crate::page::content::{ROUNDING, holds, largest};
 use crate::page::recorder::PageRecorder;
+use crate::page::scenery::ContactDrawn;
 use teeter_integrator::ContactState;
 
 /// Scale of slip, in sizes of a block: the rounding of each step adds up over a run, and that of what sticks under impacts all the more.
@@ -10,6 +11,11 @@ const SLIP_SCALE: f64 = 100.0;
 
 /// This many times as much where a point never slips by its state.
 const STUCK_SCALE: f64 = 100.0;
+
+/// Slip of no more than this (m) in a stretch is drawn as sticking.
+pub(crate) fn unseen_slip(recorder: &PageRecorder, contact: &ContactDrawn) -> f64 {
+    ROUNDING * SLIP_SCALE * recorder.scenery.blocks[contact.block].reach
+}
 
 impl Panels {
     /// Slip of the contacts; and whether their forces are worth a plot. Those that aren't are dropped.
@@ -20,7 +26,7 @@ impl Panels {
         let mut panels = Vec::new();
         let mut left_out = Vec::new();
         for contact in &scenery.contacts {
-            let rounding = ROUNDING * SLIP_SCALE * scenery.blocks[contact.block].reach;
+            let rounding = unseen_slip(recorder, contact);
             let own = &mut self.forces[contact.first..contact.first + contact.points.len()];
             own.iter_mut().flatten().for_each(|forces| forces.stick_within(rounding));
             // What a step of the force gives anyway is no impact worth a plot.
