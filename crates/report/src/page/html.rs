@@ -51,7 +51,6 @@ pub fn document(title: &str, subtitle: &str, style: &str, main: &str) -> String 
 pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> String {
     let values = Numbers::of(summary);
     let panels = Panels::of(recorder);
-    let smallest = recorder.scenery.blocks.iter().map(|block| block.reach).fold(f64::INFINITY, f64::min);
     let of_run = accelerograms::OfRun {
         length: recorder.scenery.display.length,
         drawn: accelerograms::are_drawn(recorder, &panels.curves),
@@ -65,7 +64,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("verdict", verdict(summary)),
         ("subtitle", subtitle(summary)),
         ("warnings", warnings(summary)),
-        ("tiles", tiles::tiles(&values, summary, (smallest, &panels.units), strikers(recorder))),
+        ("tiles", tiles::tiles(&values, summary, &panels.units, strikers(recorder))),
         ("residual", scientific(summary.energy.largest_residual)),
         ("notdrawn", not_drawn(&panels)),
         ("shapes", beams::shapes(recorder, &panels.units)),
@@ -204,7 +203,12 @@ fn not_drawn(panels: &Panels) -> String {
 
 /// A number with three digits and the prefix that suits it, such as `9.04 µm`.
 fn with_prefix(x: f64, unit: &str) -> String {
-    match with_digits(x, unit, 3) {
+    with_prefix_of(x, 3, unit)
+}
+
+/// The same with so many digits.
+fn with_prefix_of(x: f64, digits: usize, unit: &str) -> String {
+    match with_digits(x, unit, digits) {
         // Beyond the prefixes' range, powers of ten.
         text if text.contains('e') => format!("{} {unit}", scientific(x)),
         text => text.replace('-', "\u{2212}"),

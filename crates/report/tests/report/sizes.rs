@@ -119,11 +119,23 @@ fn tile<'a>(html: &'a str, path: &str) -> Option<&'a str> {
 }
 
 #[test]
-fn rounding_is_no_depth_and_what_does_not_rock_has_no_share_of_its_critical_angle() {
+fn the_deepest_penetration_is_the_one_that_the_terminal_tells() {
+    let run = scenario("drop");
+    let told = teeter_report::with_digits(run.summary.max_penetration, "m", 2).replace(' ', "\u{a0}");
+    assert_eq!(tile(&run.html, "max_penetration"), Some(told.as_str()));
+    let tiny = scenario("free-rocking-on-ground");
+    assert!(tiny.summary.max_penetration > 0.0);
+    let digits = teeter_report::with_digits(tiny.summary.max_penetration, "m", 2);
+    let shown = tile(&tiny.html, "max_penetration").unwrap();
+    assert_eq!(shown.split('\u{a0}').next(), digits.split(' ').next(), "{shown}");
+}
+
+#[test]
+fn what_does_not_rock_has_no_share_of_its_critical_angle() {
     let text =
         std::fs::read_to_string(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/incline.toml"));
     let html = &run("still-at-depth", &text.unwrap()).html;
-    assert_eq!((tile(html, "max_penetration"), tile(html, "max_phi_over_alpha")), (Some("0\u{a0}m"), None));
+    assert_eq!(tile(html, "max_phi_over_alpha"), None);
     let rocks = &scenario("free-rocking-on-ground").html;
     assert!(tile(rocks, "max_phi_over_alpha").is_some_and(|share| share.starts_with("0.39")));
 }

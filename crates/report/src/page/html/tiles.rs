@@ -1,6 +1,6 @@
 //! The numbers of the summary: those that one wants to know first as tiles, all others as a table.
 
-use super::{scientific, with_code, with_prefix};
+use super::{scientific, with_code, with_prefix_of};
 use crate::page::panels::{Measure, Units};
 use crate::page::{content, rounded};
 use crate::verdict::{BodyVerdict, Fate, ROCKED};
@@ -86,11 +86,6 @@ const RECLOSURES: &str = "Contacts lost and found again";
 /// The first tile that is of the computation.
 const NUMERIC: usize = 7;
 
-/// A value with its unit; what is rounding beside `scale` is shown as 0.
-fn above_rounding(value: f64, scale: f64, unit: &str) -> String {
-    with_prefix(if content::holds(value.abs(), scale) { value } else { 0.0 }, unit)
-}
-
 /// Whether all blocks stood still throughout: that contacts were lost and found again is then rounding, and no number of the motion.
 fn stood_still(summary: &Summary) -> bool {
     !summary.verdict.is_empty() && summary.rests_from == Some(0.0)
@@ -130,9 +125,8 @@ fn lost(summary: &Summary, units: &Units) -> String {
     format!("{} {prefix}J", shortest(factor * lost, 3).replace('-', "\u{2212}"))
 }
 
-/// `smallest`: the largest distance from the mass centre to the outline of the smallest block, m; with the units of the plots. `strikers`: what
-/// strikes, in words after "Impacts".
-pub(super) fn tiles(values: &Numbers, summary: &Summary, (smallest, units): (f64, &Units), strikers: &str) -> String {
+/// In the units of the plots. `strikers`: what strikes, in words after "Impacts".
+pub(super) fn tiles(values: &Numbers, summary: &Summary, units: &Units, strikers: &str) -> String {
     let mut html = String::new();
     let seconds = |t: Option<f64>| t.map(|t| as_told(t, "s"));
     for (path, label, shown) in sliding(summary) {
@@ -167,7 +161,8 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, (smallest, units): (f64
             "reclosure_count" => {
                 (RECLOSURES, Some(summary.reclosure_count.to_string()).filter(|_| !stood_still(summary)))
             }
-            "max_penetration" => ("Deepest penetration", Some(above_rounding(summary.max_penetration, smallest, "m"))),
+            // As the terminal has it.
+            "max_penetration" => ("Deepest penetration", Some(with_prefix_of(summary.max_penetration, 2, "m"))),
             "energy.largest_residual" => ("Energy residual", Some(scientific(summary.energy.largest_residual))),
             "contact.unconverged_steps" => ("Steps not solved", Some(summary.contact.unconverged_steps.to_string())),
             "contact.max_residual" => ("Contact residual", Some(scientific(summary.contact.max_residual))),
