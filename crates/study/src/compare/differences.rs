@@ -62,8 +62,8 @@ pub(super) fn of(
         let some = |found: Differences| Some(found).filter(|found| found.rows > 0);
         let rate = channel.rate().filter(|rate| motion.values(*rate).is_none());
         let rates = rate.map(|rate| {
-            let (a, b) = (unsmoothed(measured.rate.clone()), unsmoothed(simulated.rate.clone()));
-            // At an end of either motion a one-sided window makes the largest difference of noise alone.
+            // At an end of either motion a one-sided window makes the largest difference of noise alone: such rows have no rate.
+            let [a, b] = [&measured, &simulated].map(in_complete_windows);
             let [differences, held] = [rows, held].map(|rows| {
                 let rows = overlap(rows, &overlap(&measured.complete, &simulated.complete));
                 self::differences(rate, t, &a.value, &b.value, rows)
@@ -94,6 +94,12 @@ pub(super) fn of(
     found
 }
 
+/// The rates of a motion, NaN where their window reaches past an end of it.
+fn in_complete_windows(fit: &LocalFit) -> LocalFit {
+    let rates = fit.rate.iter().enumerate();
+    unsmoothed(rates.map(|(row, rate)| if fit.complete.contains(&row) { *rate } else { f64::NAN }).collect())
+}
+
 fn overlap(a: &Range<usize>, b: &Range<usize>) -> Range<usize> {
     a.start.max(b.start)..a.end.min(b.end)
 }
@@ -120,4 +126,20 @@ fn differences(channel: Channel, t: &[f64], measured: &[f64], simulated: &[f64],
     }
     found.rms = found.rms.sqrt();
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_whose_window_reaches_past_an_end_have_no_rate() {
+        let t: Vec<f64> = (0..20).map(|row| 0.1 * f64::from(row)).collect();
+        let y: Vec<f64> = t.iter().map(|t| 3.0 * t).collect();
+        let rates = in_complete_windows(&local_fit(&t, &y, 5)).value;
+        for (row, rate) in rates.iter().enumerate() {
+            assert_eq!(rate.is_finite(), (2..18).contains(&row), "{row}: {rate}");
+            assert!(!rate.is_finite() || (rate - 3.0).abs() < 1e-9, "{row}: {rate}");
+        }
+    }
 }
