@@ -755,6 +755,24 @@ fn a_plate_that_a_beam_lifts_by_micrometres_does_not_bounce() {
     }
 }
 
+/// 70 ms after it has landed it hops by some nanometres, faster than what is still.
+#[test]
+fn what_hops_by_less_than_can_be_seen_is_at_rest() {
+    let text = |end: &str| {
+        format!(
+            "[time]\nend = '{end}'\nstep = '50 us'\n[ground]\n[block.b]\nmaterial = 'a'\nwidth = '10 cm'\nheight = '2 cm'\n\
+             depth = '5 cm'\nposition = ['0 cm', '1.5 cm']\n[contact.f]\nbetween = ['b', 'ground']\nfriction = 0.3\n\
+             restitution = 0.5\n"
+        )
+    };
+    // 5 mm takes 32 ms, bounces as long again: v = 0.31 m/s, then 0.16, 0.08 … m/s, each for 2v/g.
+    let late = scene("hops", &text("93 ms"));
+    let headline = late.summary["headline"].as_str().unwrap();
+    assert_eq!(headline, "`b` is at rest but for hops of less than a ten-thousandth of its size");
+    let early = scene("hops-early", &text("60 ms"));
+    assert_eq!(early.summary["headline"], "`b` is still bouncing");
+}
+
 #[test]
 fn a_tilted_block_that_came_down_and_slides_on_is_told_as_sliding() {
     let text = "[time]\nend = '1.2 s'\nstep = '1 ms'\n[ground]\nincline = '25 deg'\n\

@@ -15,6 +15,8 @@ pub(crate) enum Going {
     Flies,
     /// It is in the air after a landing, or was so a short time ago.
     Bounces,
+    /// It is on its contacts, and hops on them by less than can be seen.
+    Hops,
     /// It stays on contacts with springs, and moves little and slowly.
     Vibrates,
     /// It stays where it stands, and is shaken there.
@@ -27,19 +29,38 @@ pub(crate) enum Going {
 
 impl Going {
     /// All of them, in the order in which many blocks are told.
-    pub(super) const ALL: [Self; 7] =
-        [Self::Falls, Self::Flies, Self::Bounces, Self::Vibrates, Self::Trembles, Self::Rolls, Self::Slides];
+    pub(super) const ALL: [Self; 8] = [
+        Self::Falls,
+        Self::Flies,
+        Self::Bounces,
+        Self::Hops,
+        Self::Vibrates,
+        Self::Trembles,
+        Self::Rolls,
+        Self::Slides,
+    ];
 
-    /// What it does, after "is still".
+    /// What it does, after "is".
     pub(super) fn word(self) -> &'static str {
         match self {
-            Self::Falls => "falling",
-            Self::Flies => "in flight",
-            Self::Bounces => "bouncing",
-            Self::Vibrates => "vibrating on its contacts",
-            Self::Trembles => "trembling where it stands",
-            Self::Rolls => "rolling",
-            Self::Slides => "sliding",
+            Self::Falls => "still falling",
+            Self::Flies => "still in flight",
+            Self::Bounces => "still bouncing",
+            Self::Hops => "at rest but for hops of less than a ten-thousandth of its size",
+            Self::Vibrates => "still vibrating on its contacts",
+            Self::Trembles => "still trembling where it stands",
+            Self::Rolls => "still rolling",
+            Self::Slides => "still sliding",
+        }
+    }
+
+    /// The same of several, after "are".
+    pub(super) fn word_of_many(self) -> &'static str {
+        match self {
+            Self::Hops => "at rest but for hops of less than a ten-thousandth of their sizes",
+            Self::Vibrates => "still vibrating on their contacts",
+            Self::Trembles => "still trembling where they stand",
+            other => other.word(),
         }
     }
 }
@@ -66,6 +87,9 @@ pub(super) struct Touched {
 /// What neither rises nor falls by this part of R over what carries it doesn't bounce, however long it touches nothing: it rides on a beam that moves up and
 /// down, micrometres above it. In free flight that takes as long as [`FLIGHT`].
 const RISES: f64 = 1e-3;
+
+/// Hops that rise by less than this part of R can't be seen: what does no more is at rest.
+const HOPS: f64 = 1e-4;
 
 /// What touches nothing for less than this part of √(R/g) doesn't fly, but chatters: a bounce as long rises by little more than a thousandth of R.
 const FLIGHT: f64 = 0.1;
@@ -132,6 +156,9 @@ impl Seen {
                 _ => Going::Falls,
             });
         }
+        if last.is_some() && !watched.on_springs && self.hops(watched, layout, number, state) {
+            return Some(Going::Hops);
+        }
         // Bounces become shorter: had it bounced again, it would have left its springs by now.
         let stays = landed.is_none_or(|landed| t - landed > STAYS * flown);
         if watched.on_springs && stays && watched.speed(layout, number, state) <= VIBRATES * watched.still_speed {
@@ -149,6 +176,16 @@ impl Seen {
         let along = if vx.abs() > vy.abs() { vx.signum() } else { -spin.signum() };
         let foot = speed * along + watched.reach * spin;
         Some(if foot.abs() <= 0.5 * speed { Going::Rolls } else { Going::Slides })
+    }
+
+    /// Whether a block that touches something rises by no more than [`HOPS`], now or with all of its speed, and doesn't go along what carries it.
+    fn hops(&self, watched: &Watched, layout: &Layout, number: usize, state: &State) -> bool {
+        let [vx, vy, _] = watched.velocity(layout, number, state);
+        let (sin, cos) = watched.carrier.slope(&state.q).sin_cos();
+        let goes = (cos * vx + sin * vy).abs();
+        let rises = watched.speed(layout, number, state).powi(2) / (2.0 * watched.gravity);
+        // Also false without gravity.
+        goes <= watched.still_speed && self.touched.strayed() + rises < HOPS * watched.reach
     }
 
     /// Of one that stands, has never come near its critical angle, and isn't on its way along what carries it: it has `slid` by much

@@ -167,7 +167,7 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         }
         Fate::Moves if of.still_from.is_some() => beside(format!("moved{}", still(scene, of, end))),
         Fate::Moves => match of.going {
-            Some(going) => beside(format!("is still {}", going.word())),
+            Some(going) => beside(format!("is {}", going.word())),
             None => beside("still moves".to_owned()),
         },
     };
@@ -299,7 +299,11 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
     tell(&rocking, if rocking.len() == 1 { "rocks on" } else { "rock on" }, "");
     for going in Going::ALL {
         let these: Vec<_> = verdict.iter().filter(|of| of.going == Some(going)).collect();
-        tell(&these, &format!("{} still {}", if these.len() == 1 { "is" } else { "are" }, going.word()), "");
+        let what = match these.len() {
+            1 => format!("is {}", going.word()),
+            _ => format!("are {}", going.word_of_many()),
+        };
+        tell(&these, &what, "");
     }
     let sliding: Vec<_> = of(&[Fate::Slid]).into_iter().filter(|of| of.rests_from.is_none()).collect();
     let (still, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(|of| of.still_from.is_some());
