@@ -162,6 +162,10 @@ pub struct EnergySummary {
     pub last: f64,
     /// What contacts, friction, dampers and the scheme took, J.
     pub lost: f64,
+    /// Of that, what contacts, friction and dampers took: the loss of the mechanics, J.
+    pub dissipated: f64,
+    /// The rest, what the scheme took by its own rule, J: it has no cause in the mechanics. Negative if it made energy.
+    pub lost_by_scheme: f64,
     /// The scene's energy scale: max |T| + |V_elastic| + |ΔV_gravity|, at least m g R; J.
     pub scale: f64,
     /// Steps in which contacts gave energy to the bodies.
@@ -420,6 +424,8 @@ impl Summary {
                 initial: ledger.initial.total(),
                 last: ledger.current.total(),
                 lost: 0.0 - (ledger.sum.contact + ledger.sum.friction + ledger.sum.viscous + ledger.sum.numerical),
+                dissipated: 0.0 - (ledger.sum.contact + ledger.sum.friction + ledger.sum.viscous),
+                lost_by_scheme: 0.0 - ledger.sum.numerical,
                 scale: ledger.scale,
                 positive_contact_work: PositiveWorkSummary {
                     steps: gains.steps,

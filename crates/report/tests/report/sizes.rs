@@ -101,15 +101,31 @@ fn rounding_is_no_loss_of_energy() {
     let text =
         std::fs::read_to_string(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/incline.toml"));
     let html = &run("still", &text.unwrap()).html;
-    let tile = &html[html.find("data-summary=\"energy.lost\"").unwrap()..];
+    let tile = &html[html.find("data-summary=\"energy.dissipated\"").unwrap()..];
     let shown = &tile[tile.find('>').unwrap() + 1..tile.find("</dd>").unwrap()];
     assert_eq!(shown, "0\u{a0}J");
     let drop = &scenario("drop").html;
-    let tile = &drop[drop.find("data-summary=\"energy.lost\"").unwrap()..];
+    let tile = &drop[drop.find("data-summary=\"energy.dissipated\"").unwrap()..];
     assert!(
         tile[..tile.find("</dd>").unwrap()].ends_with("mJ") || tile[..tile.find("</dd>").unwrap()].ends_with("\u{a0}J")
     );
     assert!(!tile[..tile.find("</dd>").unwrap()].ends_with(">0\u{a0}J"), "what is lost is told");
+}
+
+#[test]
+fn what_the_scheme_takes_is_no_dissipation() {
+    let text = std::fs::read_to_string(
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/free-rocking-on-beam.toml"),
+    );
+    let text = text.unwrap();
+    let theta = run("theta-one", &text.replacen("[time]", "[time]\nscheme = 'moreau-jean'\ntheta = 1.0", 1));
+    let energy = &theta.summary.energy;
+    assert!(energy.lost_by_scheme > 1e-3 * energy.scale, "{energy:?}");
+    assert!((energy.dissipated + energy.lost_by_scheme - energy.lost).abs() < 1e-12 * energy.scale);
+    assert!(tile(&theta.html, "energy.lost_by_scheme").is_some_and(|shown| shown.ends_with('J')));
+    let mark = "<div class=\"tile numeric\"><dt>Energy lost by the scheme";
+    assert!(theta.html.contains(mark), "it is among the numbers of the computation");
+    assert!(!scenario("free-rocking-on-ground").html.contains(mark));
 }
 
 /// What the tile of a number shows; none if there is no such tile.

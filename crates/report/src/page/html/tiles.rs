@@ -64,16 +64,17 @@ impl Numbers {
 }
 
 /// What users want to know first: the numbers of the mechanics, then from [`NUMERIC`] on those of the computation.
-const TILES: [&str; 13] = [
+const TILES: [&str; 14] = [
     "deflections.0.w",
     "max_phi_over_alpha",
     "overturned_at",
     "rests_from",
-    "energy.lost",
+    "energy.dissipated",
     "impact_count",
     "horizon",
     "reclosure_count",
     "max_penetration",
+    "energy.lost_by_scheme",
     "energy.largest_residual",
     "contact.unconverged_steps",
     "contact.max_residual",
@@ -115,9 +116,9 @@ fn sliding(summary: &Summary) -> Vec<(String, String, String)> {
     tiles.into_iter().flatten().collect()
 }
 
-/// The energy that was lost, in the unit of the plots of energies.
-fn lost(summary: &Summary, units: &Units) -> String {
-    let (lost, scale) = (summary.energy.lost, summary.energy.scale);
+/// An energy that was lost, J, in the unit of the plots of energies.
+fn lost(lost: f64, summary: &Summary, units: &Units) -> String {
+    let scale = summary.energy.scale;
     if !content::holds(lost.abs(), scale) {
         return "0 J".to_owned();
     }
@@ -155,7 +156,12 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, units: &Units, strikers
             }
             "overturned_at" => ("First overturned at", seconds(summary.overturned_at)),
             "rests_from" => ("All at rest from", seconds(summary.rests_from)),
-            "energy.lost" => ("Energy lost", Some(lost(summary, units))),
+            "energy.dissipated" => ("Energy dissipated", Some(lost(summary.energy.dissipated, summary, units))),
+            "energy.lost_by_scheme" => {
+                let energy = summary.energy.lost_by_scheme;
+                let any = content::holds(energy.abs(), summary.energy.scale);
+                ("Energy lost by the scheme", any.then(|| lost(energy, summary, units)))
+            }
             "impact_count" => (impacts.as_str(), Some(summary.impact_count.to_string())),
             "horizon" => ("Predictable up to", seconds(summary.horizon)),
             "reclosure_count" => {
@@ -189,7 +195,7 @@ fn in_one_line(shown: &str) -> String {
 }
 
 /// What the values of the table are, in words. One that has none here goes by its path.
-const NAMES: [(&str, &str); 19] = [
+const NAMES: [(&str, &str); 20] = [
     ("reclosure_count", RECLOSURES),
     ("scheme", "Time scheme"),
     ("dt", "Step"),
@@ -201,6 +207,7 @@ const NAMES: [(&str, &str); 19] = [
     ("contact.max_contacts", "Most contacts in a step"),
     ("energy.initial", "Energy at the start"),
     ("energy.final", "Energy at the end"),
+    ("energy.lost", "Energy lost, in mechanics and by the scheme"),
     ("energy.scale", "Energy to which residuals are relative"),
     ("energy.positive_contact_work.steps", "Steps in which contacts gave energy"),
     ("energy.positive_contact_work.largest", "Largest gain of energy in a step"),
