@@ -327,8 +327,10 @@ fn format_summary(summary: &Summary, folder: &Path, horizon: bool, report: bool)
         text.push_str(&format!("  {identity}\n"));
     } else {
         text.push_str(&format!(
-            "  {}{}, {}, deepest penetration {}, {identity}\n",
+            "  {}{}{}, {}, deepest penetration {}, {identity}\n",
             count(summary.impact_count, "impact"),
+            // A block that lands flat has one at each of its corners.
+            if summary.impact_count > 0 { " (each corner or point counts)" } else { "" },
             if summary.reclosure_count > 0 {
                 format!(" and {}", count(summary.reclosure_count, "re-closure"))
             } else {

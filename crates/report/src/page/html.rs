@@ -79,13 +79,15 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
     filled(TEMPLATE, &parts)
 }
 
-/// What strikes in impacts, in words after "Impacts": corners, unless there are round blocks, or springs on which nothing strikes.
+/// How impacts are counted, in words after "Impacts": each corner that strikes is one, so that a block that lands flat has two. Other words where there
+/// are round blocks; none where all contacts are springs, on which nothing strikes.
 fn strikers(recorder: &PageRecorder) -> &'static str {
     let scenery = &recorder.scenery;
     let is_sharp = |block: &BlockDrawn| block.parts.iter().all(|(corners, radius)| *corners > 2 && *radius == 0.0);
-    let by_corners =
-        scenery.blocks.iter().all(is_sharp) && !scenery.contacts.iter().any(|contact| contact.has_duration);
-    if by_corners { " of corners" } else { "" }
+    if scenery.contacts.iter().any(|contact| contact.has_duration) {
+        return "";
+    }
+    if scenery.blocks.iter().all(is_sharp) { " (each corner counts)" } else { " (each point counts)" }
 }
 
 /// The template with every `{{name}}` replaced; what is put in is not looked at again.

@@ -96,3 +96,11 @@ fn rocking_is_measured_from_the_surface_that_carries_the_block() {
     assert!(found.crossings.is_empty() && found.peaks.is_empty(), "{:?}", found.crossings);
     assert_eq!(found.impact_count, 0);
 }
+
+/// One that lands flat is one bounce to a person, and two impacts.
+#[test]
+fn impacts_are_said_to_be_counted_by_corners() {
+    let drop = crate::page::scenario("drop");
+    assert_eq!(drop.summary.impact_count % 2, 0, "both corners of a flat base strike at once");
+    assert!(drop.html.contains("<dt>Impacts (each corner counts)</dt>"));
+}
