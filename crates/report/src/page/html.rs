@@ -119,6 +119,10 @@ fn verdict(summary: &Summary) -> String {
     if let Some(reason) = summary.stopped_by {
         _ = write!(html, "; the run stopped there ({})", reason.word());
     }
+    // The sentence stands above what says how little it can be relied on.
+    if summary.warnings.iter().any(|warning| warning.code.starts_with("under-resolved")) {
+        html.push_str(" <span class=\"reserve\">– as far as such long steps can tell, see the warnings</span>");
+    }
     html
 }
 

@@ -272,9 +272,10 @@ impl PageRecorder {
         let mut of_beams = of_beams.iter_mut();
         for (place, drawn) in self.layout.beams.iter().zip(&self.scenery.beams) {
             let q = &state.q[place.range.clone()];
-            let probes = std::iter::once(&drawn.middle).chain(drawn.probes.iter().map(|(_, probe)| probe));
+            let middle = (0.5 * drawn.span, &drawn.middle);
+            let probes = std::iter::once(middle).chain(drawn.probes.iter().map(|(x, probe)| (*x, probe)));
             // The other way round a row too many would be taken before it is seen that there is no more probe.
-            probes.zip(&mut of_beams).for_each(|(probe, out)| *out = probe.deflection(q));
+            probes.zip(&mut of_beams).for_each(|((x, probe), out)| *out = drawn.bending(x, probe.deflection(q), q));
         }
         let energies = &mut rest[..ENERGIES.len()];
         let (now, initial, sum) = (&state.ledger.current, &state.ledger.initial, &state.ledger.sum);

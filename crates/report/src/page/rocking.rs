@@ -20,7 +20,8 @@ pub struct HalfCycle {
     /// ratio of the two is then near 1, and the peaks tell what is lost.
     pub omega: Option<[f64; 2]>,
     /// Housner's ratio for this block on rigid ground, 1 − (3/2) sin²α; none for a block so wide that it would be negative: it doesn't rock on, but
-    /// stays on its base. None either for a block that touches others, and where none of its corners landed.
+    /// stays on its base. None either for a block that touches others, or another beam than the one it stands on, or stands on a beam without supports,
+    /// and where none of its corners landed.
     pub housner: Option<f64>,
     /// The peak before, rad.
     pub peak_before: Option<f64>,
@@ -78,7 +79,7 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
             (verdict.stands_from.unwrap_or(f64::INFINITY), verdict.overturned_at.unwrap_or(f64::INFINITY))
         });
         let stands = |t: f64| (stands.0..=stands.1).contains(&t);
-        let touches_blocks = recorder.scenery.touches_blocks(number);
+        let stands_alone = recorder.scenery.stands_alone(number);
         let mut peaks = summary.peaks.iter().filter(|peak| peak.body == block.name).peekable();
         for crossing in summary.crossings.iter().filter(|crossing| crossing.body == block.name) {
             let before = peaks.next();
@@ -115,7 +116,7 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
                 t: crossing.t,
                 omega,
                 housner: Some(1.0 - 1.5 * alpha.sin().powi(2))
-                    .filter(|ratio| *ratio > 0.0 && omega.is_some() && !touches_blocks),
+                    .filter(|ratio| *ratio > 0.0 && omega.is_some() && stands_alone),
                 alpha,
                 peak_before: before.map(|peak| peak.phi),
                 peak_after,

@@ -61,6 +61,22 @@ pub(crate) struct BeamDrawn {
     pub(crate) probed_middle: bool,
 }
 
+impl BeamDrawn {
+    /// Whether no support holds it: it lies on blocks or ground, or flies.
+    pub(crate) fn is_free(&self) -> bool {
+        self.supports == [FREE; 2] && self.inner.is_empty()
+    }
+
+    /// A deflection at x (m), from the line through the ends of a beam that no support holds, as its motion as a whole is no bending.
+    pub(crate) fn bending(&self, x: f64, w: f64, q: &[f64]) -> f64 {
+        let (Some(first), Some(last), true) = (self.places.first(), self.places.last(), self.is_free()) else {
+            return w;
+        };
+        let (left, right) = (first.deflection(q), last.deflection(q));
+        w - left - (right - left) * (x / self.span)
+    }
+}
+
 /// A contact pair as drawn.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct ContactDrawn {
@@ -221,6 +237,19 @@ impl Scenery {
         }) || self.crowd.is_some()
     }
 
+    /// Whether a block stands on one thing only, which is ground or a beam on supports: Housner's ratio is of such a block on rigid ground. It says
+    /// nothing of a column with a beam on it, or of a stone on a beam that lies on columns.
+    pub(crate) fn stands_alone(&self, block: usize) -> bool {
+        let mut on = self.listed.iter().filter(|(one, _)| *one == block).map(|(_, surface)| *surface);
+        let carries = |surface| match surface {
+            SupportingBody::Ground => true,
+            SupportingBody::Beam(beam) => !self.beams[beam].is_free(),
+            SupportingBody::Block(_) => false,
+        };
+        let first = on.next();
+        first.is_some_and(carries) && on.all(|other| Some(other) == first) && !self.touches_blocks(block)
+    }
+
     pub(crate) fn new(scene: &Scene, layout: &Layout) -> Self {
         let blocks = scene.blocks.iter().map(|block| BlockDrawn {
             name: block.name.clone(),
@@ -260,9 +289,10 @@ impl Scenery {
                 probes: {
                     let recorded = drawn.output.quantities.contains(&scene::BeamQuantity::Deflection);
                     let asked = place.probes.iter().copied().filter(|x| recorded && !is_middle(*x, span));
-                    // The end of a cantilever deflects most.
+                    // The end of a cantilever deflects most; of a beam that no support holds it is no place of its own.
                     let supports = drawn.spec.supports.map(wording::support);
-                    let free = [0.0, span].into_iter().zip(supports).filter(|(_, support)| *support == FREE);
+                    let held = supports != [FREE; 2] || !drawn.spec.inner_supports.is_empty();
+                    let free = [0.0, span].into_iter().zip(supports).filter(|(_, support)| held && *support == FREE);
                     let mut places: Vec<f64> = asked.chain(free.map(|(end, _)| end)).collect();
                     places.sort_by(f64::total_cmp);
                     places.dedup();

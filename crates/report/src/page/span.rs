@@ -96,7 +96,14 @@ pub(super) fn shapes(recorder: &PageRecorder, units: &Units, id: &str) -> Option
     for beam in &scenery.beams {
         let own = first..first + beam.points;
         first = own.end;
-        let sizes: Vec<f64> = rows.iter().map(|(_, row)| largest(&row[own.clone()])).collect();
+        // A beam that no support holds moves as a whole, too, which is no shape.
+        let bent = |row: &[f64]| -> Vec<f64> {
+            let w = &row[own.clone()];
+            let (Some(left), Some(right), true) = (w.first(), w.last(), beam.is_free()) else { return w.to_vec() };
+            let part = |k: usize| k as f64 / (w.len() - 1).max(1) as f64;
+            w.iter().enumerate().map(|(k, w)| w - left - (right - left) * part(k)).collect()
+        };
+        let sizes: Vec<f64> = rows.iter().map(|(_, row)| largest(&bent(row))).collect();
         let most = largest(&sizes);
         if !holds(most, 1e-3 * beam.span) || panels.len() == BEAMS {
             continue;
@@ -107,7 +114,7 @@ pub(super) fn shapes(recorder: &PageRecorder, units: &Units, id: &str) -> Option
                 let (t, row) = rows[k];
                 let word = if word.is_empty() { String::new() } else { format!("{word}, ") };
                 let length = beam.span * unit.per_metre();
-                let points = smooth(&row[own.clone()]).into_iter().map(|(part, w)| (length * part, factor * w));
+                let points = smooth(&bent(row)).into_iter().map(|(part, w)| (length * part, factor * w));
                 Series::line(format!("{word}t = {}", with_digits(t, "s", 4)), points)
             });
         let lines: Vec<Series> = lines.collect();

@@ -237,18 +237,18 @@ impl Recorder<'_> {
             let name = layout.blocks.get(coarse.block).map_or("a block", |place| &place.name);
             let (limit, step) = (100.0 * coarse.of.limit(), with_digits(coarse.step, "s", 1));
             let part = match coarse.part {
-                part if part <= 2.0 => format!("{:.1} % of", 100.0 * part),
-                part => format!("{} times", shortest(part, 2)),
+                part if part < 1.0 => format!("{:.1} % of how far it moves", 100.0 * part),
+                part => format!("{} times as much as it moves at all", shortest(part, 2)),
             };
             let what = match coarse.of {
-                Of::Impacts => "its contacts close up to a step late, all together by",
-                Of::Impact => "its contacts close up to a step late, at one of them by",
+                Of::Impacts => "its contacts close up to a step late, and over the run their gaps are off by",
+                Of::Impact => "its contacts close up to a step late, and at one impact the gap is off by",
                 Of::Held => "a foot that closed above the surface, or below it, goes on pressing there, off by",
             };
             self.warn("under-resolved", None, || {
                 format!(
-                    "steps of {} are too long for the impacts of `{name}`: {what} {part} its motion, and from {limit:.1} % on motions are \
-                     likely off by more than 10 %; take a step of at most {step}, and let `teeter tradeoff` measure what accuracy it gives",
+                    "steps of {} are too long for the impacts of `{name}`: {what} {part}; from {limit:.1} % on motions are likely \
+                     off by more than 10 %; take a step of at most {step}, and let `teeter tradeoff` measure what accuracy it gives",
                     with_unit(state.dt, "s"),
                 )
             });

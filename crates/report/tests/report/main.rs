@@ -3,6 +3,7 @@
 
 mod energy;
 mod impacts;
+mod lintel;
 mod meetings;
 mod memory;
 mod network;

@@ -4,7 +4,7 @@ use crate::page::{run, shown};
 use teeter_report::UNLOCATED;
 
 /// A stone falls on a lintel: where bounces on three bodies end together, a step has more impacts than are located.
-fn lintel(scheme: &str) -> String {
+pub(crate) fn lintel(scheme: &str) -> String {
     let text = include_str!("../../../../scenarios/lintel.toml");
     let [head, rest] = text.split_once("[time]").map(|(head, rest)| [head, rest]).unwrap();
     let own = |line: &&str| !line.starts_with("end") && !line.starts_with("scheme");

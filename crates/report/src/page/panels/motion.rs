@@ -157,6 +157,11 @@ impl Panels {
             return;
         }
         let span = scenery.beams.iter().fold(0.0, |longest: f64, beam| beam.span.max(longest));
+        let free: Vec<&str> = scenery.beams.iter().filter(|beam| beam.is_free()).map(|beam| beam.name.as_str()).collect();
+        let note = (!free.is_empty()).then(|| {
+            let holds = if several { format!("of {}, which no support holds, ", free.join(", ")) } else { String::new() };
+            format!("{holds}measured from the line through the ends of the beam")
+        });
         let only_middle = drawn.len() == 1 && !several && drawn[0].0.starts_with("midspan");
         let lines = drawn.into_iter().enumerate().map(|(number, (label, column, _))| {
             let label = if only_middle { String::new() } else { label };
@@ -165,7 +170,7 @@ impl Panels {
         let lines = lines.collect();
         self.panels.push(TimePanel {
             id: "w_mid".to_owned(),
-            note: None,
+            note,
             of_contact: None,
             title: if only_middle { "Deflection at midspan w" } else { "Deflection w" }.to_owned(),
             description: "Deflection of the beams over time".to_owned(),
