@@ -154,12 +154,13 @@
   note.append("Of the energy identity, the worst step leaves ");
   note.append(byId("residual").content.cloneNode(true), " of the scene's energy unexplained.");
 
-  for (const { id, title, x_label: xLabel, unit, least, guides, series } of data.portraits) {
+  for (const { id, title, x_label: xLabel, unit, least, guides, note, series } of data.portraits) {
     const [, xName, xUnit] = xLabel.match(/^(.*) \(([^()]*)\)$/);
     plots.add({
       id, title, xName, xUnit, unit, guides, least: least[1], leastX: least[0], portrait: true, height: 300,
       series,
     });
+    if (note) htmlElement("p", "note", `${note[0].toUpperCase()}${note.slice(1)}.`, byId(`panel-${id}`));
   }
 
   const [slider, play, speed] = ["time-slider", "play", "speed"].map(byId);

@@ -334,7 +334,10 @@ const plots = (() => {
       + panel.series.map((series) => {
         const [from, to] = [indexAt(series.t, view[0]), indexAt(series.t, view[1]) + 1];
         const faint = whole ? "" : `<path class="curve faint" style="${stroke(series)}" d="${curve(series, 0, series.t.length)}"/>`;
-        return `${faint}<path class="curve" style="${stroke(series)}" d="${curve(series, from, to)}"/>`;
+        // Of hundreds of turns the first are strong; zoomed in, all that is in view.
+        const strong = whole ? Math.min(to, series.strong ?? to) : to;
+        const pale = strong < to ? `<path class="curve faint" style="${stroke(series)}" d="${curve(series, Math.max(from, strong - 1), to)}"/>` : "";
+        return `${faint}${pale}<path class="curve" style="${stroke(series)}" d="${curve(series, from, strong)}"/>`;
       }).join("");
     panel.dots = panel.series.map((series) => svgElement("circle", { r: 4.5, style: `fill: ${colour(series.index)}` }, panel.svg));
     panel.place = (series, t) => [x(valueAt({ t: series.t, y: series.x }, t)), y(valueAt(series, t))];

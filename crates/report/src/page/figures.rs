@@ -140,16 +140,21 @@ impl Plots<'_> {
     }
 
     fn portrait(&self, portrait: &Portrait) -> Figure {
-        let line = |line: &PortraitLine| {
-            Series::line(&line.label, line.x.iter().copied().zip(line.v.iter().copied())).number(line.number)
+        let part = |line: &PortraitLine, label: &str, points: std::ops::Range<usize>| {
+            let points = line.x[points.clone()].iter().copied().zip(line.v[points].iter().copied());
+            Series::line(label, points).number(line.number)
         };
-        let lines: Vec<Series> = portrait.lines.iter().map(line).collect();
+        // What is pale stays behind.
+        let pale = portrait.lines.iter().filter(|line| line.strong < line.t.len());
+        let pale = pale.map(|line| part(line, "", line.strong.saturating_sub(1)..line.t.len()).faint());
+        let strong = portrait.lines.iter().map(|line| part(line, &line.label, 0..line.strong));
+        let lines: Vec<Series> = pale.chain(strong).collect();
         let x = lines.iter().flat_map(Series::points).map(|point| point.0);
         let x = Axis::around(format!("{} ({})", portrait.x_label, portrait.x_unit), x, portrait.least[0]);
         let y = Axis::around(format!("{} ({})", portrait.y_label, portrait.y_unit), values(&lines), portrait.least[1]);
         // A block's critical angles, where one of them is reached: beyond, it overturns.
         let panel = guided(Panel::new(y).with(lines).guides(portrait.guides.clone()), &portrait.guides, &x);
-        Figure::new(portrait.id, &portrait.title, x).panel(panel)
+        Figure::new(portrait.id, &portrait.title, x).panel(panel.note(portrait.note.clone()))
     }
 
     /// Bands of many bodies, from those of [`BAND_NAMES`](super::bands::BAND_NAMES), over time.

@@ -107,6 +107,8 @@ pub(crate) struct Portrait {
     pub(crate) y_unit: String,
     pub(crate) least: [f64; 2],
     pub(crate) guides: Vec<f64>,
+    /// What is to be known to read it.
+    pub(crate) note: Option<String>,
     /// By blocks.
     pub(crate) lines: Vec<PortraitLine>,
 }
@@ -121,6 +123,8 @@ pub(crate) struct PortraitLine {
     pub(crate) t: Vec<f64>,
     pub(crate) x: Vec<f64>,
     pub(crate) v: Vec<f64>,
+    /// How many of its points are drawn strong; the later ones are pale.
+    pub(crate) strong: usize,
 }
 
 /// All that is drawn over time of a run, but contact forces, and what isn't.

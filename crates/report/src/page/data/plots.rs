@@ -127,6 +127,8 @@ pub(super) struct PortraitData {
     unit: String,
     least: [f64; 2],
     guides: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    note: Option<String>,
     series: Vec<PortraitSeries>,
 }
 
@@ -134,6 +136,9 @@ pub(super) struct PortraitData {
 struct PortraitSeries {
     label: String,
     index: usize,
+    /// How many points are drawn strong, if not all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    strong: Option<usize>,
     t: Column,
     x: Column,
     y: Column,
@@ -217,13 +222,15 @@ pub(super) fn portraits(panels: &Panels) -> Vec<PortraitData> {
         unit: portrait.y_unit.clone(),
         least: portrait.least.map(digits),
         guides: portrait.guides.iter().copied().map(digits).collect(),
+        note: portrait.note.clone(),
         series: portrait
             .lines
             .iter()
             .map(|line| {
                 let [x, y] = [&line.x, &line.v].map(|values| Column::of(values, SEEN));
                 let t = Column::of(&line.t, SEEN_BELOW_PEAKS);
-                PortraitSeries { label: line.label.clone(), index: line.number, t, x, y }
+                let strong = Some(line.strong).filter(|strong| *strong < line.t.len());
+                PortraitSeries { label: line.label.clone(), index: line.number, strong, t, x, y }
             })
             .collect(),
     };

@@ -290,6 +290,7 @@ impl Panels {
                 ([x, v], [a, b])
             };
             let line = |(k, points): (usize, Vec<Point>)| {
+                let strong = strong(&points);
                 let values = |of: usize, factor: f64| points.iter().map(|point| point[of] * factor).collect();
                 PortraitLine {
                     label: block_label(recorder, k),
@@ -297,6 +298,7 @@ impl Panels {
                     t: values(0, 1.0),
                     x: values(1, factors[0]),
                     v: values(2, factors[1]),
+                    strong,
                 }
             };
             let coordinate = &COORDINATES[c];
@@ -318,11 +320,23 @@ impl Panels {
                 y_unit: format!("{}/s", units[1]),
                 least: if c == PHI { [4e-5 * factors[0], 2e-3] } else { factors.map(|factor| 1e-4 * reach * factor) },
                 guides,
+                note: (orbits.iter().any(|(_, points)| strong(points) < points.len()))
+                    .then(|| format!("strong: the first {} turns of the velocity; pale: all later ones", STRONG)),
                 lines: orbits.into_iter().map(line).collect(),
             };
             self.portraits.push(portrait);
         }
     }
+}
+
+/// A portrait in which the velocity turns more often than this is a solid area: then as many turns as [`STRONG`] are drawn strong, the rest pale.
+const MANY_TURNS: usize = 120;
+const STRONG: usize = 20;
+
+/// How many points of an orbit are drawn strong.
+fn strong(points: &[Point]) -> usize {
+    let turns = || points.windows(2).enumerate().filter(|(_, two)| two[0][2] * two[1][2] < 0.0).map(|(k, _)| k + 1);
+    if turns().count() <= MANY_TURNS { points.len() } else { turns().nth(STRONG).unwrap_or(points.len()) }
 }
 
 /// Where no block goes farther than this part of the range in which all of them are, they are drawn from their starts.
@@ -366,3 +380,19 @@ fn guides(angles: impl Iterator<Item = f64>, factor: f64) -> Vec<f64> {
 
 /// Angles that differ by less are the same, rad.
 const SAME: f64 = 1e-6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_hundreds_of_bounces_the_first_are_strong_and_of_a_few_all() {
+        let bounces = |count: usize| -> Vec<Point> {
+            (0..4 * count).map(|k| [k as f64, 1.0, [1.0, 0.3, -0.3, -1.0][k % 4]]).collect()
+        };
+        // Each bounce turns twice: at its top, and at the ground.
+        assert_eq!(strong(&bounces(291)), 42);
+        assert_eq!(strong(&bounces(12)), 48);
+        assert_eq!(strong(&[]), 0);
+    }
+}
