@@ -237,8 +237,8 @@ impl Recorder<'_> {
             let name = layout.blocks.get(coarse.block).map_or("a block", |place| &place.name);
             let (limit, step) = (100.0 * coarse.of.limit(), with_digits(coarse.step, "s", 1));
             let part = match coarse.part {
-                part if part < 1.0 => format!("{:.1} % of how far it moves", 100.0 * part),
-                part => format!("{} times as much as it moves at all", shortest(part, 2)),
+                part if part < 1.0 => format!("{:.1} % of its motion", 100.0 * part),
+                part => format!("{} times its whole motion", shortest(part, 2)),
             };
             let what = match coarse.of {
                 Of::Impacts => "its contacts close up to a step late, and over the run their gaps are off by",

@@ -6,6 +6,7 @@ use crate::page::content::{ROUNDING, holds, largest, travel};
 use crate::page::orbit::Point;
 use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, BLOCK_FRAME, PageRecorder};
 use crate::page::scenery::FREE;
+use crate::{shortest, with_digits};
 use std::collections::BTreeSet;
 
 /// A coordinate of a block.
@@ -101,27 +102,45 @@ impl Panels {
                 Line::from_zero(curves, source, block_label(recorder, k), k)
             };
             let guides = if c == PHI { critical_angles(recorder, &moving, factor) } else { Vec::new() };
-            let panel = |id: &str, title: &str, (measure, unit): (Measure, String), lines, guides, least| TimePanel {
-                id: id.to_owned(),
-                note: None,
-                of_contact: None,
-                title: title.to_owned(),
-                description: format!("{title} of the blocks over time"),
-                measure,
-                unit,
-                least,
-                guides,
-                cut: false,
-                place: Place::Motion,
-                lines,
-            };
+            let panel =
+                |id: &str, title: &str, (measure, unit): (Measure, String), lines, guides, least, note| TimePanel {
+                    id: id.to_owned(),
+                    note,
+                    of_contact: None,
+                    title: title.to_owned(),
+                    description: format!("{title} of the blocks over time"),
+                    measure,
+                    unit,
+                    least,
+                    guides,
+                    cut: false,
+                    place: Place::Motion,
+                    lines,
+                };
             let lines = moving.iter().map(|(k, _)| line(&self.curves, *k, c, zero(*k), factor)).collect();
             let name = if from_start { coordinate.from_start } else { coordinate.name };
-            self.panels.push(panel(coordinate.id, name, (measures[0], unit.to_owned()), lines, guides, least));
+            let size = |x: f64| match c {
+                PHI => format!("{}\u{a0}{unit}", shortest(x * factor, 2)),
+                _ => with_digits(x, "m", 2),
+            };
+            let note = unseen(moving.iter().map(|(k, values)| (block_label(recorder, *k), travel(values))), size);
+            self.panels.push(panel(coordinate.id, name, (measures[0], unit.to_owned()), lines, guides, least, note));
             let lines = moving.iter().map(|(k, _)| line(&self.curves, *k, 3 + c, 0.0, 1.0)).collect();
             let least = if c == PHI { 2e-3 } else { 1e-4 * reach };
             let unit = (measures[1], "rad/s".to_owned());
-            self.panels.push(panel(coordinate.velocity_id, coordinate.velocity_name, unit, lines, Vec::new(), least));
+            let rates = moving.iter().map(|(k, _)| {
+                (block_label(recorder, *k), largest(&self.curves.curve(BLOCK_COLUMNS * k + BLOCK_COORDINATES + c)))
+            });
+            let note = unseen(rates, |x| with_digits(x, if c == PHI { "rad/s" } else { "m/s" }, 2));
+            self.panels.push(panel(
+                coordinate.velocity_id,
+                coordinate.velocity_name,
+                unit,
+                lines,
+                Vec::new(),
+                least,
+                note,
+            ));
         }
     }
 
@@ -157,9 +176,11 @@ impl Panels {
             return;
         }
         let span = scenery.beams.iter().fold(0.0, |longest: f64, beam| beam.span.max(longest));
-        let free: Vec<&str> = scenery.beams.iter().filter(|beam| beam.is_free()).map(|beam| beam.name.as_str()).collect();
+        let free: Vec<&str> =
+            scenery.beams.iter().filter(|beam| beam.is_free()).map(|beam| beam.name.as_str()).collect();
         let note = (!free.is_empty()).then(|| {
-            let holds = if several { format!("of {}, which no support holds, ", free.join(", ")) } else { String::new() };
+            let holds =
+                if several { format!("of {}, which no support holds, ", free.join(", ")) } else { String::new() };
             format!("{holds}measured from the line through the ends of the beam")
         });
         let only_middle = drawn.len() == 1 && !several && drawn[0].0.starts_with("midspan");
@@ -327,6 +348,18 @@ impl Panels {
             self.portraits.push(portrait);
         }
     }
+}
+
+/// A curve that goes less far than this part of the farthest is a line at its start.
+const UNSEEN: f64 = 5e-3;
+
+/// Says of which bodies the curves are too small to be seen beside the others, with how far they go.
+fn unseen(bodies: impl Iterator<Item = (String, f64)>, size: impl Fn(f64) -> String) -> Option<String> {
+    let bodies: Vec<(String, f64)> = bodies.collect();
+    let most = bodies.iter().fold(0.0, |most: f64, (_, far)| most.max(*far));
+    let small = bodies.iter().filter(|(_, far)| *far < UNSEEN * most);
+    let told: Vec<String> = small.map(|(name, far)| format!("{name} (up to {})", size(*far))).collect();
+    (!told.is_empty()).then(|| format!("too small to be seen here: {}", told.join(", ")))
 }
 
 /// A portrait in which the velocity turns more often than this is a solid area: then as many turns as [`STRONG`] are drawn strong, the rest pale.
