@@ -10,7 +10,7 @@ import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 import { keyboardWalk, playByKeys, plotsWithoutWords, violations } from "./accessible.mjs";
 import { pageData } from "./columns.mjs";
-import { outOfPicture, specksAtFirst, unplotted, wrongVerdicts } from "./motion.mjs";
+import { flatAtFirst, outOfPicture, specksAtFirst, unfoldedOnPaper, unplotted, wrongVerdicts } from "./motion.mjs";
 import { overlaps } from "./overlaps.mjs";
 import { plotsDrawn, plotsOfRounding } from "./rounding.mjs";
 
@@ -88,6 +88,8 @@ async function ofRun(page, run, problem, isFirst) {
   (await playByKeys(page)).forEach(problem);
   if (!isFirst) return;
   // What doesn't depend on the window.
+  (await flatAtFirst(page, trajectory)).forEach(problem);
+  (await page.evaluate(unfoldedOnPaper)).forEach((text) => problem(`unfolds on paper: ${text}`));
   const data = pageData(await page.$eval("#data", (element) => element.textContent));
   wrongVerdicts(summary, trajectory, data).forEach(problem);
   (await unplotted(page, trajectory)).forEach(problem);

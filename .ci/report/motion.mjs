@@ -34,6 +34,35 @@ export function specksAtFirst() {
   return size < 7 ? size.toFixed(1) : null;
 }
 
+/** Whether the plots open on a flat line: on all of a run in which something moves in its first or last twentieth only. */
+export async function flatAtFirst(page, trajectory) {
+  const [start, end] = [trajectory[0].t, trajectory[trajectory.length - 1].t];
+  const moves = (key) => {
+    const values = trajectory.map((row) => row[key]);
+    const [low, high] = values.reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
+    const last = values[values.length - 1];
+    // What is rounding isn't plotted.
+    if (!(high - low > 1e-4)) return null;
+    const differs = (from) => (x) => Math.abs(x - from) > 0.02 * (high - low);
+    return [trajectory[values.findIndex(differs(values[0]))].t, trajectory[values.findLastIndex(differs(last))].t];
+  };
+  const spans = Object.keys(trajectory[0]).filter((key) => /\.(x|y|phi|vx|vy|omega)$/.test(key)).map(moves).filter(Boolean);
+  if (!spans.length) return [];
+  const part = (Math.max(...spans.map(([, to]) => to)) - Math.min(...spans.map(([from]) => from))) / (end - start);
+  const opened = await page.$("#opened-on") !== null;
+  if (opened && part > 0.25) return [`opens on a part of the run, though ${(100 * part).toFixed(0)} % of it moves`];
+  return !opened && part >= 0 && part < 0.1 && trajectory.length > 1000 ? [`opens on all of a run of which ${(100 * part).toFixed(1)} % moves`] : [];
+}
+
+/** Folds that paper unfolds though they hold nothing but tables of detail. Runs in the page. */
+export function unfoldedOnPaper() {
+  const folds = [...document.querySelectorAll("#numbers, #settings, #rocking details")].filter((one) => !one.open);
+  window.dispatchEvent(new Event("beforeprint"));
+  const found = folds.filter((one) => one.open).map((one) => one.querySelector("summary").textContent);
+  window.dispatchEvent(new Event("afterprint"));
+  return found;
+}
+
 const gravity = 9.81;
 
 /**

@@ -2,6 +2,8 @@
 
 (() => {
   const several = scenery.blocks.length > 1;
+  /** The curves of what moves. */
+  const motions = [];
   if (crowd) addCrowd();
   addPanels(false);
 
@@ -13,6 +15,7 @@
         const known = new Map(otherAt.map((after, k) => [picture += after, others[k]]));
         return { label, index, y, raw, t: atBorders ? forces.borders : curves.t, known };
       });
+      if (!late) motions.push(...series);
       plots.add({
         id: panel.id, contact: panel.contact, title: panel.title, unit: panel.unit, series, guides: panel.guides, least: panel.least,
         cut: panel.cut ? cutOf(series, panel.least) : undefined, height: late ? 160 : 170,
@@ -413,6 +416,41 @@
     if (wanted.has("t") && Number.isFinite(Number(wanted.get("t")))) seek(Number(wanted.get("t")));
   }
 
+  /** When anything goes through the middle 98 % of its range for the first and the last time: before and after that all curves are flat. */
+  function motion() {
+    let [first, last] = [Infinity, -Infinity];
+    for (const { t, y } of motions) {
+      const values = y.map((x) => x ?? NaN);
+      const [low, high] = values.reduce(([a, b], x) => (Number.isFinite(x) ? [Math.min(a, x), Math.max(b, x)] : [a, b]), [Infinity, -Infinity]);
+      const [begin, end] = [values.find(Number.isFinite), values[values.length - 1]];
+      if (!(high > low) || !Number.isFinite(end)) continue;
+      const moved = (x, from) => Math.abs(x - from) > 0.01 * (high - low);
+      const leaves = values.findIndex((x) => moved(x, begin));
+      let comes = values.length - 1;
+      while (comes > 0 && !moved(values[comes], end)) comes -= 1;
+      first = Math.min(first, t[Math.max(0, leaves - 1)] ?? Infinity);
+      last = Math.max(last, t[Math.min(t.length - 1, comes + 1)]);
+    }
+    return [first, last];
+  }
+
+  /** Where all moves within a small part of the run, the plots open on that. */
+  function openOnMotion() {
+    const [first, last] = motion();
+    if (!(last > first) || last - first > 0.2 * (end - start)) return;
+    const room = 0.25 * (last - first);
+    const [from, to] = [Math.max(start, first - room), Math.min(end, last + room)];
+    plots.zoom(from, to);
+    const say = (t) => `${Number((t * timeUnit[1]).toPrecision(3))} ${timeUnit[0]}`;
+    const when = first - start < 1e-3 * (end - start) ? `after ${say(last)}` : `before ${say(first)} or after ${say(last)}`;
+    const note = htmlElement("p", "note", `Nothing moves ${when}: the plots open on what does. `);
+    note.id = "opened-on";
+    const whole = htmlElement("button", "link", "Show all times", note);
+    whole.type = "button";
+    whole.addEventListener("click", () => plots.zoom(start, end));
+    byId("plots").prepend(note);
+  }
+
   /** What to say of the picture if it doesn't open on all. */
   let near = null;
   relayout();
@@ -420,6 +458,7 @@
   exaggerate(scene.suitable(factors));
   near = scene.closeUp();
   if (near !== null) byId("scene-keys").prepend(near);
+  openOnMotion();
   fromAddress();
   window.addEventListener("hashchange", fromAddress);
   let lastWidth = document.documentElement.clientWidth;
