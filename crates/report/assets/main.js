@@ -480,7 +480,8 @@
   // Paper can't be asked for another time or contact: it has the telling pictures, and the strongest contacts.
   let printed = null;
   window.addEventListener("beforeprint", () => {
-    document.querySelectorAll("details").forEach((one) => one.setAttribute("open", ""));
+    // Long tables stay folded unless they were unfolded before: they are sheets of numbers that the files hold.
+    document.querySelectorAll("details.again, #model").forEach((one) => one.setAttribute("open", ""));
     if (printed) return;
     setPlaying(false);
     printed = { frame, pictures: htmlElement("div", "printed", undefined, byId("stage")) };
@@ -493,7 +494,7 @@
       htmlElement("figcaption", "", `${byId("time-readout").textContent} ${byId("scene-readout").textContent}`, figure);
     }
     show(printed.frame);
-    if (active.length > 3) plots.choose(...strongestContacts(8)); // So many have room on paper.
+    if (active.length > 3) plots.choose(...strongestContacts(3)); // More would be sheets of plots that look alike.
     // Paper has its own width; drawn for that of the screen, the plots' type would come out too small or too large.
     plots.drawFor(680);
   });
