@@ -34,6 +34,8 @@ const plots = (() => {
     const keys = panel.portrait && panel.series.length === 1 ? [] : panel.series.filter(({ raw }) => !raw);
     const isMany = keys.length > many && keys.every(({ upper }) => !upper);
     const legend = htmlElement("div", isMany ? "legend many" : "legend", undefined, isMany ? folded(keys, panel, row) : row);
+    // Columns as wide as the longest name, which would break in a narrower one.
+    if (isMany) legend.style.setProperty("--names", String(Math.min(30, Math.max(...keys.map(({ label }) => label.length)))));
     for (const series of keys) {
       const key = htmlElement("span", series.label ? "key" : "key bare", undefined, legend);
       const sample = sampleOf(series);
