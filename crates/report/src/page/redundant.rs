@@ -6,7 +6,8 @@
 //! - one tangential force, if the pair has friction and a point sticks. Where all slide, friction follows from the normal forces.
 //!
 //! How a pair's tangential force is shared by its points is open wherever two of them stick: their tangential forces have one line of
-//! action, so that equilibrium knows only their sum.
+//! action, so that equilibrium knows only their sum. On a beam, whose top fibre moves by its own amount at each point, its vibrations decide: the shares
+//! jump from foot to foot with them, and tell no more of the block.
 //!
 //! With more unknowns than equations only sums over some of the contacts follow. Of more than two points of one pair only the
 //! resultant does, but for those on a beam, which bends as they press. Contacts with duration have springs, whose forces follow from
@@ -23,6 +24,9 @@ const LOOKS: usize = 50;
 
 /// Contacts are told if they are so in this part of these times: not for a touch in passing.
 const LEAST: f64 = 0.1;
+
+/// How many of these times are a rest.
+const REST: usize = 2;
 
 /// What equilibrium leaves open of the forces of a contact.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -64,9 +68,7 @@ pub(super) fn redundant(recorder: &PageRecorder, curves: &Curves, forces: &[Opti
     let buckets: Vec<usize> = (1..=LOOKS.min(buckets)).map(|look| look * last / LOOKS.min(buckets)).collect();
     let shares = |contact: &ContactDrawn, bucket: usize| {
         let sticking = states(contact, bucket).into_iter().filter(|state| *state == ContactState::Stick).count();
-        // The top fibre of a beam moves along as it turns, by its own amount at each point.
-        let along = contact.beam.is_some_and(|beam| recorder.scenery.beams[beam].top);
-        sticking > 1 && contact.has_friction && !contact.has_duration && !along
+        sticking > 1 && contact.has_friction && !contact.has_duration
     };
     let looks: Vec<Vec<bool>> = buckets
         .iter()
@@ -83,11 +85,13 @@ pub(super) fn redundant(recorder: &PageRecorder, curves: &Curves, forces: &[Opti
         })
         .collect();
     let at_end = |contact: usize| looks.last().is_some_and(|look| look[contact]);
+    // A short rest, as before a column is shaken, is enough for a square wave between its feet.
+    let rests = |count: usize| count >= REST;
     let often = |count: usize| count as f64 >= LEAST * looks.len() as f64 && count > 0;
     let of = |contact: usize| Redundant {
         forces: often(looks.iter().filter(|look| look[contact]).count()),
         at_end: at_end(contact),
-        shares: often(buckets.iter().filter(|bucket| shares(&contacts[contact], **bucket)).count()),
+        shares: rests(buckets.iter().filter(|bucket| shares(&contacts[contact], **bucket)).count()),
     };
     (0..contacts.len()).map(of).collect()
 }
