@@ -89,6 +89,8 @@ const BEAMS: usize = 4;
 pub(super) fn shapes(recorder: &PageRecorder, units: &Units, id: &str) -> Option<Figure> {
     let scenery = &recorder.scenery;
     let rows: Vec<(f64, &[f64])> = recorder.kept.frames.rows().collect();
+    // Between pictures several steps apart a beam may have deflected farther: of the largest deflection only the nearest picture is known.
+    let apart = rows.windows(2).map(|two| two[1].0 - two[0].0).fold(0.0, f64::max) > 1.5 * recorder.kept.curves.step();
     let run = rows.last()?.0 - rows.first()?.0;
     let unit = scenery.display.length;
     let mut first = BLOCK_FRAME * scenery.blocks.len();
@@ -112,6 +114,7 @@ pub(super) fn shapes(recorder: &PageRecorder, units: &Units, id: &str) -> Option
         let lines =
             chosen(&rows.iter().map(|row| row.0).collect::<Vec<_>>(), &sizes, run).into_iter().map(|(k, word)| {
                 let (t, row) = rows[k];
+                let word = if apart { word.replace("largest", "near the largest") } else { word.to_owned() };
                 let word = if word.is_empty() { String::new() } else { format!("{word}, ") };
                 let length = beam.span * unit.per_metre();
                 let points = smooth(&bent(row)).into_iter().map(|(part, w)| (length * part, factor * w));
