@@ -80,9 +80,26 @@ fn a_tangential_force_that_feet_share_in_one_of_many_ways_is_drawn_as_their_sum(
     let (_, tangential) = svg.split_once("Tangential force").unwrap();
     assert!(svg.contains("sum over the points"));
     assert_eq!(svg.matches("Tangential force").count(), 1, "{tangential}");
+    // A short rest before a column of drums is shaken is enough for a square wave between the feet of its lowest drum.
+    let drums = crate::page::run("drums-at-rest", &scenario_text("column-of-drums"));
+    assert!(data(&drums.html)["forces"]["shares"].as_array().unwrap().contains(&0.into()));
+    // So is the rest of a block on a beam, whose vibrations decide the shares.
+    let standing = scenario_text("free-rocking-on-beam").replacen("tilt     = \"5 deg\"", "tilt     = \"0 deg\"", 1);
+    assert!(standing.contains("0 deg"));
+    assert_eq!(data(&crate::page::run("beam-at-rest", &standing).html)["forces"]["shares"], serde_json::json!([0]));
     // One that rocks stands on one foot at a time, whose force is known.
     let rocks = scenario("free-rocking-on-beam");
     assert_eq!(data(&rocks.html)["forces"]["shares"].as_array().map_or(0, Vec::len), 0);
+}
+
+#[test]
+fn the_largest_shape_is_near_the_largest_deflection_where_pictures_are_several_steps_apart() {
+    // 5000 steps, 2000 pictures at most.
+    let thinned = &scenario("free-rocking-on-beam").html;
+    assert!(thinned.contains("near the largest, t = ") && !thinned.contains(">largest, t = "));
+    let short = scenario_text("free-rocking-on-beam").replacen("end  = \"0.5 s\"", "end  = \"0.1 s\"", 1);
+    let whole = run("shapes-of-all-steps", &short).html;
+    assert!(whole.contains("largest, t = ") && !whole.contains("near the largest"));
 }
 
 #[test]
