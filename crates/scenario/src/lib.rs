@@ -157,7 +157,7 @@ impl ParsedScene {
     ) -> Result<scene::Scene, diagnostic::Diagnostics> {
         let read = std::cell::RefCell::new(read);
         let make = || self.document(sets, &mut |path| (*read.borrow_mut())(path));
-        let scene = |document: &_| resolve::scene(document, stem, shared, &mut |path| (*read.borrow_mut())(path));
+        let scene = |last: &mut _| resolve::scene(last, stem, shared, &mut |path| (*read.borrow_mut())(path));
         shared.with_document(sets, make, scene)?.map_err(|found| in_order(found, sets))
     }
 
@@ -175,7 +175,7 @@ impl ParsedScene {
         let read = std::cell::RefCell::new(read);
         let make = || self.document(sets, &mut |path| (*read.borrow_mut())(path));
         let scene =
-            |document: &_| resolve::scene_with_warnings(document, stem, shared, &mut |path| (*read.borrow_mut())(path));
+            |last: &mut _| resolve::scene_with_warnings(last, stem, shared, &mut |path| (*read.borrow_mut())(path));
         shared.with_document(sets, make, scene)?.map_err(|found| in_order(found, sets))
     }
 

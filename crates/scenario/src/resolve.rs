@@ -15,6 +15,7 @@ mod motions;
 pub(crate) mod names;
 pub use names::matches_pattern;
 mod outlines;
+mod parts;
 mod records;
 mod sections;
 mod shape;
@@ -28,7 +29,7 @@ use std::collections::BTreeMap;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
-use crate::document::Document;
+use crate::document::{Document, SettingsRead};
 use crate::scene::{AngleUnit, ContactScene, Display, LengthUnit, Scene, SolverScene, SupportingBody, Time, most_used};
 use crate::scene_checks;
 use crate::value::Value;
@@ -37,6 +38,8 @@ use crate::{output_size, quantity, wording};
 use teeter_contact::Law;
 use teeter_solvers::SOLVERS;
 
+use parts::SceneParts;
+pub(crate) use shared::LastScene;
 pub use shared::{SharedCounts, SharedParts};
 pub use timing::MAX_STEPS;
 
@@ -66,7 +69,7 @@ pub type ReadFile<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 /// # Errors
 /// All errors at once.
 pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> Result<Resolved, Diagnostics> {
-    let mut resolver = Resolver::new(&document, false, None, read);
+    let mut resolver = Resolver::new(&document, false, read);
     let scene = resolver.scene(stem);
     resolver.report_unheld(scene.as_ref());
     let (mut errors, mut warnings, files) = (resolver.errors, resolver.warnings, resolver.files);
@@ -119,35 +122,37 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
 /// The scene of a document alone, as [`resolve`] finds it: without what only a written document needs, and without warnings,
 /// which take longer than the scene itself. `shared` has records of the same files.
 pub(crate) fn scene(
-    document: &Document,
+    last: &mut LastScene,
     stem: &str,
     shared: &SharedParts,
     read: &mut ReadFile<'_>,
 ) -> Result<Scene, Diagnostics> {
-    scene_of(document, stem, shared, read).map(|(scene, _)| scene)
+    scene_of(last, stem, shared, read).map(|(scene, _)| scene)
 }
 
 /// As [`scene`], with its warnings.
 pub(crate) fn scene_with_warnings(
-    document: &Document,
+    last: &mut LastScene,
     stem: &str,
     shared: &SharedParts,
     read: &mut ReadFile<'_>,
 ) -> Result<(Scene, Vec<Diagnostic>), Diagnostics> {
-    scene_of(document, stem, shared, read).map(|(scene, mut warnings)| {
-        warnings.extend(scene_checks::warnings(&scene, document, &shared.measures));
+    scene_of(last, stem, shared, read).map(|(scene, mut warnings)| {
+        warnings.extend(scene_checks::warnings(&scene, &last.document, &shared.measures));
         (scene, warnings)
     })
 }
 
 /// The scene, and the warnings that come with its making.
 fn scene_of(
-    document: &Document,
+    last: &mut LastScene,
     stem: &str,
     shared: &SharedParts,
     read: &mut ReadFile<'_>,
 ) -> Result<(Scene, Vec<Diagnostic>), Diagnostics> {
-    let mut resolver = Resolver::new(document, false, Some(shared), read);
+    let LastScene { document, parts } = last;
+    let mut resolver = Resolver::new(document, false, read);
+    (resolver.shared, resolver.parts) = (Some(shared), Some(parts));
     let scene = resolver.scene(stem);
     resolver.report_unheld(scene.as_ref());
     match scene {
@@ -163,7 +168,7 @@ fn scene_of(
 /// Errors about several keys in a document of which some values were already refused; these are not
 /// reported again.
 pub(crate) fn mistakes(document: &Document, read: &mut ReadFile<'_>) -> Vec<Diagnostic> {
-    let mut resolver = Resolver::new(document, true, None, read);
+    let mut resolver = Resolver::new(document, true, read);
     let scene = resolver.scene("");
     resolver.report_unheld(scene.as_ref());
     resolver.errors
@@ -199,6 +204,8 @@ struct Resolver<'a, 'f> {
     files: Vec<(String, Vec<u8>)>,
     /// Records of earlier scenes.
     shared: Option<&'a SharedParts>,
+    /// Those of the last scene of this document, whose place is taken by those of this one.
+    parts: Option<&'a mut SceneParts>,
     doc: &'a Document,
     /// Whether values are missing for which there is already a message.
     partial: bool,
@@ -206,6 +213,8 @@ struct Resolver<'a, 'f> {
     block_names: Vec<BlockName>,
     /// The numbers of blocks by their names.
     blocks: BTreeMap<String, usize>,
+    /// The settings on which names depend, by numbers of copies.
+    of_names: SettingsRead,
     signals: BTreeMap<&'a str, usize>,
     errors: Vec<Diagnostic>,
     warnings: Vec<Diagnostic>,
@@ -215,6 +224,7 @@ struct Resolver<'a, 'f> {
 
 /// A beam with a static start that only blocks under it may hold, and what is wrong if there are
 /// none.
+#[derive(Debug, Clone)]
 struct Unheld {
     beam: String,
     rule: String,
@@ -222,9 +232,9 @@ struct Unheld {
 }
 
 impl<'a, 'f> Resolver<'a, 'f> {
-    fn new(doc: &'a Document, partial: bool, shared: Option<&'a SharedParts>, read: &'f mut ReadFile<'f>) -> Self {
+    fn new(doc: &'a Document, partial: bool, read: &'f mut ReadFile<'f>) -> Self {
         let numbered = |group| doc.names(group).into_iter().zip(0..).collect();
-        let block_names = BlockName::all(doc);
+        let (block_names, of_names) = doc.settings_read(|| BlockName::all(doc));
         let mut errors = Vec::new();
         let copies = |key: &str| doc.integer(key).and_then(|count| u64::try_from(count).ok()).unwrap_or(1);
         for table in doc.names("block") {
@@ -241,12 +251,14 @@ impl<'a, 'f> Resolver<'a, 'f> {
         Self {
             read,
             files: Vec::new(),
-            shared,
+            shared: None,
+            parts: None,
             doc,
             partial,
             beams: numbered("beam"),
             block_names,
             blocks,
+            of_names,
             signals: numbered("signal"),
             errors,
             warnings: Vec::new(),
@@ -303,27 +315,43 @@ impl<'a, 'f> Resolver<'a, 'f> {
         let title = doc.text("title").unwrap_or(stem).to_owned();
         let gravity = self.pair("world.gravity");
         // Each part is resolved even if others have failed, so that all errors are found.
-        let signals = self.all_signals();
-        let ground = self.ground(&signals);
-        let mut beams: Vec<_> = doc.names("beam").into_iter().map(|name| self.beam(name, &signals)).collect();
-        if self.mesh_sizes(&beams) {
-            beams.iter_mut().flatten().for_each(|beam| self.assembled(beam));
-        }
-        let (contacts, joined, crowd) = self.contacts();
+        let (signals, of_signals) = self.scene_part(|held| &mut held.signals, &[], Self::all_signals);
+        let (ground, _) = self.scene_part(|held| &mut held.ground, &[&of_signals], |this| this.ground(&signals));
+        let (beams, of_beams) =
+            self.scene_part(|held| &mut held.beams, &[&of_signals], |this| this.all_beams(&signals));
+        let ((contacts, joined, crowd), of_contacts) = self.scene_part(|held| &mut held.contacts, &[], Self::contacts);
         self.contacts_fit_memory(&contacts);
-        let names = self.block_names.clone();
-        let blocks: Vec<_> = names.iter().map(|name| self.block(name, &beams, &contacts, &joined, &signals)).collect();
+        let (shapes, of_shapes) = self.scene_part(|held| &mut held.shapes, &[], Self::block_shapes);
+        let (placements, of_placements) = self.scene_part(
+            |held| &mut held.placements,
+            &[&of_shapes, &of_contacts],
+            |this| this.placements(&shapes, &contacts, &joined),
+        );
+        let (blocks, _) = self.scene_part(
+            |held| &mut held.blocks,
+            &[&of_placements, &of_beams, &of_contacts, &of_signals],
+            |this| this.all_blocks(&shapes, placements, &beams, &contacts, &signals),
+        );
         self.check_support_cycles(&blocks);
         self.feet_are_sharp(&ground, &contacts, &blocks);
         self.check_contacts_can_move(&blocks, &contacts);
         self.check_crowd(crowd.as_ref(), &blocks, &beams);
         self.check_static_starts_beside_profile(&ground, &beams, &blocks, &contacts);
-        let forces: Vec<_> = doc.names("force").into_iter().map(|name| self.force(name, &signals)).collect();
-        let loads: Vec<_> = doc.names("load").into_iter().map(|name| self.load(name, &beams, &signals)).collect();
+        let (forces, _) = self.scene_part(
+            |held| &mut held.forces,
+            &[&of_signals],
+            |this| doc.names("force").into_iter().map(|name| this.force(name, &signals)).collect(),
+        );
+        let (loads, _) = self.scene_part(
+            |held| &mut held.loads,
+            &[&of_beams, &of_signals],
+            |this| doc.names("load").into_iter().map(|name| this.load(name, &beams, &signals)).collect(),
+        );
         if self.blocks.is_empty() && self.beams.is_empty() && !self.partial {
             self.error("block", "the scene has no bodies", "add a [block.NAME] or a [beam.NAME]");
         }
-        let time = self.time(&blocks, &beams);
+        let (time, _) =
+            self.scene_part(|held| &mut held.time, &[&of_shapes, &of_beams], |this| this.time(&shapes, &beams));
         if let Some(time) = &time {
             self.check_contact_laws(time.scheme, &contacts, crowd.as_ref(), &beams);
             self.check_table_covers_run(&signals, time.steps() as f64 * time.step);

@@ -1,5 +1,7 @@
 //! A decoded document: values by path, with defaults and origins, and its conversion back to TOML.
 
+mod other_numbers;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::ops::Bound;
@@ -10,10 +12,12 @@ use crate::judge::Judge;
 use crate::keys::{Key, Kind, Occurrence, PathTarget, TableSchema};
 use crate::measure::Measure;
 use crate::schema::Schema;
-use crate::sets::setting;
 use crate::source::{Origin, SourceText};
 use crate::tree::lenient_value;
 use crate::value::{Item, Value};
+
+use other_numbers::ReadCounts;
+pub use other_numbers::SettingsRead;
 
 /// A value of a document with its key and origin.
 #[derive(Debug, Clone)]
@@ -41,6 +45,7 @@ pub struct Document {
     source: SourceText,
     /// The overrides that it was read with.
     sets: Vec<(String, String)>,
+    reads: ReadCounts,
     entries: BTreeMap<String, Entry>,
     tables: BTreeMap<String, Origin>,
     /// By the path of the group.
@@ -70,6 +75,7 @@ impl Document {
             schema,
             source,
             sets: sets.to_vec(),
+            reads: ReadCounts::new(sets.len()),
             entries: BTreeMap::new(),
             tables: BTreeMap::new(),
             names: BTreeMap::new(),
@@ -110,18 +116,26 @@ impl Document {
 
     /// The value at a path with its key and origin.
     pub fn entry(&self, path: &str) -> Option<&Entry> {
-        self.entries.get(path)
+        self.entries.get(path).inspect(|entry| self.count_read(entry))
+    }
+
+    fn count_read(&self, entry: &Entry) {
+        if let Origin::Set { index, .. } = entry.origin {
+            self.reads.count(index);
+        }
     }
 
     /// All values, sorted by path.
     pub fn entries(&self) -> impl Iterator<Item = (&str, &Entry)> {
-        self.entries.iter().map(|(path, entry)| (path.as_str(), entry))
+        self.entries.iter().map(|(path, entry)| (path.as_str(), entry)).inspect(|(_, entry)| self.count_read(entry))
     }
 
     /// The values whose paths begin with `start`, sorted by path.
     pub fn entries_from<'d>(&'d self, start: &'d str) -> impl Iterator<Item = (&'d str, &'d Entry)> {
         let after = self.entries.range::<str, _>((Bound::Included(start), Bound::Unbounded));
-        after.map(|(path, entry)| (path.as_str(), entry)).take_while(move |(path, _)| path.starts_with(start))
+        let from =
+            after.map(|(path, entry)| (path.as_str(), entry)).take_while(move |(path, _)| path.starts_with(start));
+        from.inspect(|(_, entry)| self.count_read(entry))
     }
 
     /// Whether there is a value at the path, given or by default.
@@ -147,7 +161,7 @@ impl Document {
 
     /// A quantity in SI units.
     pub fn quantity(&self, path: &str) -> Option<f64> {
-        match self.entries.get(path)? {
+        match self.entry(path)? {
             Entry { key: Key { kind: Kind::Quantity(..), .. }, value: Value::Number(value), .. } => Some(*value),
             _ => None,
         }
@@ -155,7 +169,7 @@ impl Document {
 
     /// A bare number.
     pub fn number(&self, path: &str) -> Option<f64> {
-        match self.entries.get(path)? {
+        match self.entry(path)? {
             Entry { key: Key { kind: Kind::Number(_), .. }, value: Value::Number(value), .. } => Some(*value),
             _ => None,
         }
@@ -163,7 +177,7 @@ impl Document {
 
     /// A whole number.
     pub fn integer(&self, path: &str) -> Option<i64> {
-        match self.entries.get(path)?.value {
+        match self.entry(path)?.value {
             Value::Integer(value) => Some(value),
             _ => None,
         }
@@ -171,7 +185,7 @@ impl Document {
 
     /// A text, name or choice, or the word given instead of a table.
     pub fn text(&self, path: &str) -> Option<&str> {
-        match &self.entries.get(path)?.value {
+        match &self.entry(path)?.value {
             Value::Text(text) | Value::Item(Item::Word(text)) => Some(text),
             _ => None,
         }
@@ -179,7 +193,7 @@ impl Document {
 
     /// A flag.
     pub fn flag(&self, path: &str) -> Option<bool> {
-        match self.entries.get(path)?.value {
+        match self.entry(path)?.value {
             Value::Flag(flag) => Some(flag),
             _ => None,
         }
@@ -187,7 +201,7 @@ impl Document {
 
     /// A vector x, y in SI units. One number g where the kind is [`Kind::Downward`] is (0, −g).
     pub fn pair(&self, path: &str) -> Option<[f64; 2]> {
-        let entry = self.entries.get(path)?;
+        let entry = self.entry(path)?;
         match (&entry.value, entry.key.kind) {
             (Value::Pair(pair), _) => Some(*pair),
             (Value::Number(down), Kind::Downward(_)) => Some([0.0, 0.0 - down]),
@@ -197,7 +211,7 @@ impl Document {
 
     /// A word or a table.
     pub fn item(&self, path: &str) -> Option<&Item> {
-        match &self.entries.get(path)?.value {
+        match &self.entry(path)?.value {
             Value::Item(item) => Some(item),
             _ => None,
         }
@@ -205,7 +219,7 @@ impl Document {
 
     /// An array of pairs of texts.
     pub fn text_pairs(&self, path: &str) -> Option<&[[String; 2]]> {
-        match &self.entries.get(path)?.value {
+        match &self.entry(path)?.value {
             Value::TextPairs(pairs) => Some(pairs),
             _ => None,
         }
@@ -213,7 +227,7 @@ impl Document {
 
     /// An array of tables.
     pub fn items(&self, path: &str) -> Option<&[Item]> {
-        match &self.entries.get(path)?.value {
+        match &self.entry(path)?.value {
             Value::Items(items) => Some(items),
             _ => None,
         }
@@ -221,7 +235,7 @@ impl Document {
 
     /// Two, each a word or a table: the supports of a beam.
     pub fn item_pair(&self, path: &str) -> Option<&[Item; 2]> {
-        match &self.entries.get(path)?.value {
+        match &self.entry(path)?.value {
             Value::ItemPair(items) => Some(items),
             _ => None,
         }
@@ -229,7 +243,7 @@ impl Document {
 
     /// Points x, y in SI units.
     pub fn points(&self, path: &str) -> Option<&[[f64; 2]]> {
-        match &self.entries.get(path)?.value {
+        match &self.entry(path)?.value {
             Value::Points(points) => Some(points),
             _ => None,
         }
@@ -237,7 +251,7 @@ impl Document {
 
     /// A list of numbers, or of quantities in SI units.
     pub fn list(&self, path: &str) -> Option<&[f64]> {
-        match &self.entries.get(path)?.value {
+        match &self.entry(path)?.value {
             Value::List(values) => Some(values),
             _ => None,
         }
@@ -245,7 +259,7 @@ impl Document {
 
     /// Some words.
     pub fn words(&self, path: &str) -> Option<&[String]> {
-        match &self.entries.get(path)?.value {
+        match &self.entry(path)?.value {
             Value::Words(words) => Some(words),
             _ => None,
         }
@@ -253,7 +267,7 @@ impl Document {
 
     /// Two words: the bodies of a contact.
     pub fn text_pair(&self, path: &str) -> Option<[&str; 2]> {
-        match &self.entries.get(path)?.value {
+        match &self.entry(path)?.value {
             Value::TextPair([first, second]) => Some([first, second]),
             _ => None,
         }
@@ -261,7 +275,7 @@ impl Document {
 
     /// A quantity by one of several units.
     pub fn measure(&self, path: &str) -> Option<Measure> {
-        match self.entries.get(path)?.value {
+        match self.entry(path)?.value {
             Value::Measure(measure) => Some(measure),
             _ => None,
         }
@@ -269,7 +283,7 @@ impl Document {
 
     /// Where the value at a path came from; for a path without a value, where its table came from.
     pub fn origin(&self, path: &str) -> Origin {
-        if let Some(entry) = self.entries.get(path) {
+        if let Some(entry) = self.entry(path) {
             return entry.origin.clone();
         }
         self.table_origin(path)
@@ -292,7 +306,7 @@ impl Document {
     /// was not written, at the header of its table. For rules about several keys; make it a warning
     /// with [`Diagnostic::as_warning`].
     pub fn error(&self, path: &str, rule: impl Into<String>, remedy: impl Into<String>) -> Diagnostic {
-        let entry = self.entries.get(path);
+        let entry = self.entry(path);
         let given = entry.filter(|_| self.is_given(path));
         let origin = given.map_or_else(|| self.table_origin(path), |entry| entry.origin.clone());
         let mut found = self.source.error(&origin, path, rule).with_remedy(remedy);
@@ -341,47 +355,6 @@ impl Document {
         let mut sets = self.sets.clone();
         sets.push((key.to_owned(), value.to_string()));
         decode::parse(self.schema, &self.source.text, &self.source.file, &sets)
-    }
-
-    /// Takes other numbers, as if the file had been read with `sets` in place of its own settings: quicker than that, for a study of many
-    /// documents. Returns whether it could; otherwise it is unchanged, and reading has to tell: settings of other keys, a changed value
-    /// that is not a number in the place of a number (a word may decide about other keys), or that its key doesn't accept.
-    #[must_use]
-    pub fn take_numbers(&mut self, sets: &[(String, String)]) -> bool {
-        let Some(numbers) = self.numbers(sets) else { return false };
-        sets.clone_into(&mut self.sets);
-        self.entries.extend(numbers);
-        true
-    }
-
-    /// The entries that these settings change.
-    fn numbers(&self, sets: &[(String, String)]) -> Option<Vec<(String, Entry)>> {
-        let same_key = |(own, other): (&(String, String), &(String, String))| own.0 == other.0;
-        if self.sets.len() != sets.len() || !self.sets.iter().zip(sets).all(same_key) {
-            return None;
-        }
-        let mut judged = Vec::new();
-        for (index, ((path, old), (_, value))) in self.sets.iter().zip(sets).enumerate() {
-            if old == value {
-                continue;
-            }
-            let path = path.trim();
-            let entry = self.entries.get(path)?;
-            // It isn't where a later setting replaced it.
-            if !matches!(&entry.origin, Origin::Set { index: from, .. } if *from == index) {
-                return None;
-            }
-            let node = lenient_value(value.trim(), Origin::Set { index, text: setting(path, value) });
-            let mut judge = Judge { schema: self.schema, source: &self.source, findings: Vec::new() };
-            let value = judge.value(entry.key, path, &node).filter(|_| judge.findings.is_empty())?;
-            let is_number = |value: &Value| matches!(value, Value::Number(_) | Value::Integer(_));
-            if !is_number(&value) || !is_number(&entry.value) {
-                return None;
-            }
-            let entry = Entry { key: entry.key, value, origin: node.origin, written: node.written };
-            judged.push((path.to_owned(), entry));
-        }
-        Some(judged)
     }
 
     /// Sets a value that follows from others, so that [`Document::to_toml`] writes it.

@@ -4,7 +4,7 @@
 use teeter_text::decode::{self, parse};
 use teeter_text::diagnostic::Diagnostics;
 use teeter_text::dimension::Dimension;
-use teeter_text::document::{Document, SetError};
+use teeter_text::document::{Document, SetError, SettingsRead};
 use teeter_text::keys::{Key, Kind, Occurrence, PathTarget, Presence, Range, TableSchema};
 use teeter_text::schema::{FileAdvice, NameReference, Namespace, Schema};
 use teeter_text::source::Origin;
@@ -246,4 +246,34 @@ fn other_numbers_give_the_document_that_reading_gives() {
     let mut first_of_two = twice("6");
     first_of_two[0].1 = "3".to_owned();
     assert!(with_numbers(&of_two, &first_of_two).is_none(), "not by the first of two");
+}
+
+#[test]
+fn what_is_made_of_a_document_tells_which_settings_were_read() {
+    let sets = |density: &str, workers: &str| {
+        [("fluid.water.density", density), ("site.workers", workers)].map(|(key, of)| (key.to_owned(), of.to_owned()))
+    };
+    let mut document = parse(&PLANT, TEXT, "plant.toml", &sets("900 kg/m^3", "7")).unwrap();
+    let of_density = document.settings_read(|| document.quantity("fluid.water.density"));
+    assert_eq!(of_density.0, Some(900.0));
+    let of_workers = document.settings_read(|| document.integer("site.workers")).1;
+    // Whether a key has a value is the same with other numbers; keys of the file don't change.
+    let of_none = document.settings_read(|| (document.has("site.workers"), document.text("pipe.main.wall").is_some()));
+    // By whichever way a value is read: a message quotes it.
+    let ways: [&dyn Fn() -> bool; 5] = [
+        &|| document.entry("site.workers").is_some(),
+        &|| document.entries_from("site.w").count() > 0,
+        &|| document.entries().count() > 0,
+        &|| document.error("site.workers", "", "").written.is_some(),
+        &|| document.settings_read(|| document.integer("site.workers")).0.is_some(),
+    ];
+    let ways: Vec<SettingsRead> = ways.iter().map(|way| document.settings_read(way).1).collect();
+    for (density, workers) in [("900 kg/m^3", "7"), ("900 kg/m^3", "8"), ("950 kg/m^3", "7"), ("950 kg/m^3", "8")] {
+        assert!(document.take_numbers(&sets(density, workers)));
+        let same = [density == "900 kg/m^3", workers == "7"];
+        let read = [&of_density.1, &of_workers, &of_none.1].map(|read| document.has_settings(read));
+        assert_eq!(read, [same[0], same[1], true]);
+        assert_eq!(document.has_settings(&of_density.1.and(&of_workers)), same == [true; 2]);
+        assert!(ways.iter().all(|read| same[1] || !document.has_settings(read)), "{density}, {workers}");
+    }
 }

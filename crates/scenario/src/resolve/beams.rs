@@ -26,7 +26,16 @@ fn undamped(support: Support) -> Support {
 const MOST_ELEMENTS: usize = 2 * MAX_ELEMENTS;
 
 impl Resolver<'_, '_> {
-    pub(super) fn beam(&mut self, name: &str, signals: &[Option<SignalScene>]) -> Option<BeamScene> {
+    /// All beams, in the order of the scene.
+    pub(super) fn all_beams(&mut self, signals: &[Option<SignalScene>]) -> Vec<Option<BeamScene>> {
+        let mut beams: Vec<_> = self.doc.names("beam").into_iter().map(|name| self.beam(name, signals)).collect();
+        if self.mesh_sizes(&beams) {
+            beams.iter_mut().flatten().for_each(|beam| self.assembled(beam));
+        }
+        beams
+    }
+
+    fn beam(&mut self, name: &str, signals: &[Option<SignalScene>]) -> Option<BeamScene> {
         let path = format!("beam.{name}");
         let at = |key: &str| format!("{path}.{key}");
         let material = (self.doc.text(&at("section")) != Some("direct")).then(|| self.material(&path)).flatten();
@@ -171,7 +180,7 @@ impl Resolver<'_, '_> {
 
     /// Limits the elements of all beams together; those of a single beam are limited by the table
     /// of keys. Returns whether they are within the limit.
-    pub(super) fn mesh_sizes(&mut self, beams: &[Option<BeamScene>]) -> bool {
+    fn mesh_sizes(&mut self, beams: &[Option<BeamScene>]) -> bool {
         let mut sum = 0;
         for beam in beams.iter().flatten() {
             sum += beam.spec.nodes.len().saturating_sub(1).max(beam.spec.elements);
@@ -187,7 +196,7 @@ impl Resolver<'_, '_> {
 
     /// Checks that need the assembled beam: consistency of its values, rigid motions, and the shape
     /// from a file.
-    pub(super) fn assembled(&mut self, beam: &mut BeamScene) {
+    fn assembled(&mut self, beam: &mut BeamScene) {
         let path = format!("beam.{}", beam.name);
         let start = format!("{path}.start");
         // A basis can't be found for every beam; that is told elsewhere.

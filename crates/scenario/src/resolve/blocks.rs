@@ -21,7 +21,8 @@ use crate::scene::{
 struct AlreadyReported;
 
 /// A block's shape about its mass centre.
-struct BlockShape {
+#[derive(Debug, Clone)]
+pub(super) struct BlockShape {
     /// `None` for a rectangle with sharp corners.
     parts: Option<Arc<[BlockPart]>>,
     /// The mass centre in the coordinates of the drawing, m.
@@ -29,22 +30,54 @@ struct BlockShape {
     /// Whether it starts where it is drawn if no position is given.
     is_in_place: bool,
     /// Width and height, or the largest and the smallest extent across sides, m.
-    extents: [f64; 2],
+    pub(super) extents: [f64; 2],
     matter: Matter,
 }
 
 impl Resolver<'_, '_> {
-    pub(super) fn block(
+    /// All blocks, in the order of the scene: their shapes and placements with what else they have.
+    pub(super) fn all_blocks(
         &mut self,
-        block: &BlockName,
+        shapes: &[Option<BlockShape>],
+        placements: Vec<Option<Placement>>,
         beams: &[Option<BeamScene>],
         contacts: &[Option<ContactScene>],
+        signals: &[Option<SignalScene>],
+    ) -> Vec<Option<BlockScene>> {
+        let names = self.block_names.clone();
+        let of_blocks = names.iter().zip(shapes).zip(placements);
+        of_blocks.map(|((name, shape), placed)| self.block(name, shape, placed, beams, contacts, signals)).collect()
+    }
+
+    /// The shapes of all blocks.
+    pub(super) fn block_shapes(&mut self) -> Vec<Option<BlockShape>> {
+        let names = self.block_names.clone();
+        names.iter().map(|name| self.block_shape(name)).collect()
+    }
+
+    /// Where all blocks start; one without a shape has no place.
+    pub(super) fn placements(
+        &mut self,
+        shapes: &[Option<BlockShape>],
+        contacts: &[Option<ContactScene>],
         joined: &Joined,
+    ) -> Vec<Option<Placement>> {
+        let names = self.block_names.clone();
+        let of_blocks = names.iter().zip(shapes);
+        of_blocks.map(|(name, shape)| self.placement(name, shape.as_ref()?, contacts, joined)).collect()
+    }
+
+    fn block(
+        &mut self,
+        block: &BlockName,
+        shape: &Option<BlockShape>,
+        placement: Option<Placement>,
+        beams: &[Option<BeamScene>],
+        contacts: &[Option<ContactScene>],
         signals: &[Option<SignalScene>],
     ) -> Option<BlockScene> {
         let path = format!("block.{}", block.table);
         let at = |key: &str| format!("{path}.{key}");
-        let shape = self.block_shape(block);
         let velocity = self.pair(&at("velocity"));
         let spin = self.quantity(&at("spin"));
         let motion = self.block_motion(&path, signals);
@@ -57,15 +90,13 @@ impl Resolver<'_, '_> {
                 }
             }
         }
-        let shape = shape?;
-        let placement = self.placement(block, &shape, contacts, joined);
-        let [width, height] = shape.extents;
+        let BlockShape { parts, extents: [width, height], matter, .. } = shape.clone()?;
         let of = BlockScene {
             name: block.name.clone(),
             width,
             height,
-            parts: shape.parts,
-            matter: shape.matter,
+            parts,
+            matter,
             placement: placement?,
             velocity: velocity?,
             spin: spin?,

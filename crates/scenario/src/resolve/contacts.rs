@@ -5,10 +5,11 @@ use teeter_detect::Kinematics;
 use teeter_integrator::{BeamFace, ImpactLaw, PairLaw};
 
 use super::many::Many;
+use super::parts::Contacts;
 use super::{Resolver, names};
 use crate::dimension::Dimension;
 use crate::measure::Measure;
-use crate::scene::{BlockScene, ContactScene, Crowd, GroundScene, SupportingBody};
+use crate::scene::{BlockScene, ContactScene, GroundScene, SupportingBody};
 use crate::words::{ContactFrames, Law};
 
 /// The keys of the friction of the left and the right foot.
@@ -44,7 +45,7 @@ pub(super) fn is_pattern(name: &str) -> bool {
 impl Resolver<'_, '_> {
     /// All contacts, those with full names first, and the pairs that they join; and the contacts
     /// between blocks that are too many to be listed.
-    pub(super) fn contacts(&mut self) -> (Vec<Option<ContactScene>>, Joined, Option<Crowd>) {
+    pub(super) fn contacts(&mut self) -> Contacts {
         let (mut contacts, mut joined) = (Vec::new(), Joined::new());
         let names = self.doc.names("contact");
         let of_many = |name: &&str| {

@@ -1,6 +1,7 @@
 //! What the scenes of a study have in common: the document but for some numbers, records and tables, read and corrected once, and
 //! beams with their factors and equilibria.
 
+use super::parts::SceneParts;
 use super::records::Scaling;
 use crate::beam_measures::BeamMeasures;
 use crate::diagnostic::Diagnostics;
@@ -30,8 +31,8 @@ const MOST_BEAMS: usize = 32;
 /// What one scene after another is made of, held for the next one. Their text and files must be the same.
 #[derive(Debug, Default)]
 pub struct SharedParts {
-    /// Those of earlier scenes that aren't in use: at most as many as there are threads.
-    documents: Mutex<Vec<Document>>,
+    /// Those that aren't in use: at most as many as there are threads.
+    last: Mutex<Vec<LastScene>>,
     corrected: Mutex<Held<RecordKeys, Record>>,
     used: Mutex<Held<(RecordKeys, Placed), RecordScene>>,
     tables: Mutex<Held<TableKeys, Table>>,
@@ -44,6 +45,13 @@ pub struct SharedParts {
     /// By the texts of the paths and values in their tables.
     motions: Mutex<Held<String, MotionScene>>,
     counts: Counts,
+}
+
+/// A document, and the parts of the scene last made from it.
+#[derive(Debug)]
+pub(crate) struct LastScene {
+    pub(super) document: Document,
+    pub(super) parts: SceneParts,
 }
 
 #[derive(Debug, Default)]
@@ -103,23 +111,23 @@ pub(super) struct RecordKeys {
 type Placed = (String, Option<(&'static str, Scaling)>);
 
 impl SharedParts {
-    /// What `of` makes of the document with these settings: an earlier one with other numbers if that is all they change, or one
-    /// that is made now.
+    /// What `of` makes of the document with these settings: that of an earlier scene with other numbers if that is all they change, or
+    /// one that is made now.
     pub(crate) fn with_document<T>(
         &self,
         sets: &[(String, String)],
         make: impl FnOnce() -> Result<Document, Diagnostics>,
-        of: impl FnOnce(&Document) -> T,
+        of: impl FnOnce(&mut LastScene) -> T,
     ) -> Result<T, Diagnostics> {
-        let lock = || self.documents.lock().unwrap_or_else(PoisonError::into_inner);
+        let lock = || self.last.lock().unwrap_or_else(PoisonError::into_inner);
         let earlier = lock().pop();
-        let earlier = earlier.and_then(|mut document| document.take_numbers(sets).then_some(document));
-        let document = match earlier {
-            Some(document) => document,
-            None => make()?,
+        let earlier = earlier.and_then(|mut last| last.document.take_numbers(sets).then_some(last));
+        let mut last = match earlier {
+            Some(last) => last,
+            None => LastScene { document: make()?, parts: SceneParts::default() },
         };
-        let found = of(&document);
-        lock().push(document);
+        let found = of(&mut last);
+        lock().push(last);
         Ok(found)
     }
 

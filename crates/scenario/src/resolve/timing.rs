@@ -1,8 +1,9 @@
 //! Resolves steps, their number and stability, and rows of output.
 
 use super::Resolver;
+use super::blocks::BlockShape;
 use crate::output_size::OutputSize;
-use crate::scene::{BeamScene, BlockScene, ContactScene, Crowd, Scene, SchemeName, StopScene, SupportingBody, Time};
+use crate::scene::{BeamScene, ContactScene, Crowd, Scene, SchemeName, StopScene, SupportingBody, Time};
 use crate::wording;
 use crate::words::{SchemeChoice, StopWord, Word};
 use teeter_integrator::{GeneralizedAlphaSettings, PairLaw};
@@ -29,7 +30,7 @@ const FEW_BLOCKS: usize = 8;
 const MAX_BYTES: f64 = 10e9;
 
 impl Resolver<'_, '_> {
-    pub(super) fn time(&mut self, blocks: &[Option<BlockScene>], beams: &[Option<BeamScene>]) -> Option<Time> {
+    pub(super) fn time(&mut self, blocks: &[Option<BlockShape>], beams: &[Option<BeamScene>]) -> Option<Time> {
         let end = self.quantity("time.end");
         let errors = self.errors.len();
         let accuracy = self.accuracy();
@@ -43,7 +44,7 @@ impl Resolver<'_, '_> {
         if let Some(theta) = theta {
             self.check_stability(theta, beams);
         }
-        let scheme = self.scheme(blocks, beams, theta);
+        let scheme = self.scheme(blocks.len(), beams, theta);
         let spectral_radius = self.spectral_radius(scheme);
         let activation_gamma = self.number("time.activation_gamma");
         let gap_tolerance = self.gap_tolerance(blocks);
@@ -100,15 +101,10 @@ impl Resolver<'_, '_> {
     }
 
     /// The scheme, checked against θ and the beams.
-    fn scheme(
-        &mut self,
-        blocks: &[Option<BlockScene>],
-        beams: &[Option<BeamScene>],
-        theta: Option<f64>,
-    ) -> Option<SchemeName> {
+    fn scheme(&mut self, blocks: usize, beams: &[Option<BeamScene>], theta: Option<f64>) -> Option<SchemeName> {
         let scheme = self.choice::<SchemeChoice>("time.scheme").map(|choice| match choice {
             SchemeChoice::Named(scheme) => scheme,
-            SchemeChoice::Auto => self.automatic_scheme(blocks.len(), beams),
+            SchemeChoice::Auto => self.automatic_scheme(blocks, beams),
         });
         let held = beams.iter().flatten().find(|beam| beam.spec.axial == teeter_beam::Axial::Held);
         if let (Some(beam), Some(scheme)) = (held, scheme.filter(|scheme| !scheme.takes_held_beams())) {
@@ -234,9 +230,9 @@ impl Resolver<'_, '_> {
 
     /// The gap below which a contact counts as closed, m: the given one, if it is small relative to
     /// the blocks.
-    fn gap_tolerance(&mut self, blocks: &[Option<BlockScene>]) -> f64 {
+    fn gap_tolerance(&mut self, blocks: &[Option<BlockShape>]) -> f64 {
         let Some(given) = self.doc.quantity("time.gap_tolerance") else { return gap_tolerance(blocks) };
-        let shortest = blocks.iter().flatten().map(|block| block.width.min(block.height)).fold(f64::INFINITY, f64::min);
+        let shortest = sides(blocks).map(|[width, height]| width.min(height)).fold(f64::INFINITY, f64::min);
         let part = given / shortest;
         // Compared as products, so that the default for a thin block passes.
         if given > DOUBTFUL_GAP * shortest {
@@ -296,9 +292,14 @@ impl Resolver<'_, '_> {
 
 /// The default gap tolerance: 1e-12 m, scaled for blocks outside [0.01, 1] m; less for a block so
 /// thin that this would give a warning.
-fn gap_tolerance(blocks: &[Option<BlockScene>]) -> f64 {
-    let largest = blocks.iter().flatten().map(|block| block.width.max(block.height)).fold(0.0, f64::max);
-    let shortest = blocks.iter().flatten().map(|block| block.width.min(block.height)).fold(f64::INFINITY, f64::min);
+fn gap_tolerance(blocks: &[Option<BlockShape>]) -> f64 {
+    let largest = sides(blocks).map(|[width, height]| width.max(height)).fold(0.0, f64::max);
+    let shortest = sides(blocks).map(|[width, height]| width.min(height)).fold(f64::INFINITY, f64::min);
     let usual = if largest == 0.0 || (0.01..=1.0).contains(&largest) { 1e-12 } else { 1e-11 * largest };
     usual.min(DOUBTFUL_GAP * shortest)
+}
+
+/// Width and height of the blocks, m.
+fn sides(blocks: &[Option<BlockShape>]) -> impl Iterator<Item = [f64; 2]> {
+    blocks.iter().flatten().map(|block| block.extents)
 }

@@ -12,6 +12,7 @@ mod flush;
 mod located;
 mod many;
 mod modes;
+mod other_numbers;
 mod painleve;
 mod polygons;
 mod profiles;
