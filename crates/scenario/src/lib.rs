@@ -38,6 +38,7 @@ mod build_diagnostics;
 pub mod decode;
 pub mod deflection;
 mod driven;
+mod equilibrium_key;
 mod flexibility;
 mod ground_profile;
 mod held;

@@ -125,6 +125,9 @@ impl Used {
 /// The names of the signals that are used.
 fn used<'a>(scene: &Scene, document: &'a Document) -> BTreeMap<&'a str, Used> {
     let mut used = BTreeMap::<&str, Used>::new();
+    if scene.signals.is_empty() {
+        return used;
+    }
     for (path, _) in document.entries() {
         let (owner, key) = path.rsplit_once('.').unwrap_or(("", path));
         let mut by = |name| {

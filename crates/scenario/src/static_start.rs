@@ -7,13 +7,13 @@
 //! stay. A beam in modes settles in its modes, so it is at rest in the model that runs.
 
 use crate::driven::{self, BeamModel};
+use crate::equilibrium_key::EquilibriumKey;
 use crate::placement::{self, InstabilityMode, PlacementError, carried_by, starting_poses};
 use crate::resolve::SharedParts;
-use crate::scene::{BeamScene, BlockScene, Placement, Scene, SupportingBody};
+use crate::scene::{Placement, Scene, SupportingBody};
 use crate::simulation::{BlockBody, BuildError, Pairs, detector};
 use nalgebra::{Vector2, Vector3};
 use std::collections::BTreeSet;
-use std::fmt::Write;
 use teeter_beam::{SpanLoad, StaticError};
 use teeter_detect::{BodyId, PointPair, ShapePair, SidePair, SurfacePair};
 use teeter_integrator::{
@@ -109,7 +109,7 @@ impl<'a> InitialConfiguration<'a> {
         let Some(shared) = shared.filter(|_| scene.beams.iter().any(|beam| beam.static_start)) else {
             return self.search(scene, shared);
         };
-        let found = shared.settled(self.key(scene), || {
+        let found = shared.settled(EquilibriumKey::of(scene, self), || {
             let start = self.search(scene, Some(shared))?;
             let (poses, deflections, pressed) = (self.poses.clone(), self.deflections.clone(), self.pressed.clone());
             Ok::<_, BuildError>(Settled { poses, deflections, pressed, start })
@@ -118,34 +118,6 @@ impl<'a> InitialConfiguration<'a> {
         self.deflections.clone_from(&found.deflections);
         self.pressed.clone_from(&found.pressed);
         Ok(found.start.clone())
-    }
-
-    /// All that an equilibrium depends on, as a text: numbers in it read back to the same doubles, zeros keep their sign. Of motions
-    /// and histories only the start counts; what of the scene the search doesn't look at, such as time, isn't in it.
-    fn key(&self, scene: &Scene) -> String {
-        let mut key =
-            format!("{:?}{:?}{:?}{:?}{:?}", scene.gravity, self.ground, self.poses, self.deflections, scene.contacts);
-        let mut add = |part: &dyn std::fmt::Debug| {
-            let _ = write!(key, "{part:?}");
-        };
-        if let Some(ground) = &scene.ground {
-            add(&(ground.incline, ground.motion.is_given()));
-        }
-        for (of, model) in scene.beams.iter().zip(self.beams) {
-            let BeamScene { spec, thickness, top, static_start, shape, self_weight, reduction, position, .. } = of;
-            add(&(spec, thickness, top, static_start, shape, self_weight, reduction, position, &model.displaced));
-        }
-        for block in &scene.blocks {
-            let BlockScene { width, height, parts, matter, placement, motion, .. } = block;
-            add(&(width, height, parts, matter, placement, motion.0.each_ref().map(Option::is_some)));
-        }
-        for force in &scene.forces {
-            add(&(force.block, force.force, force.couple, force.history.signal().value(0.0)));
-        }
-        for load in &scene.loads {
-            add(&(load.beam, load.kind, load.history.signal().value(0.0)));
-        }
-        key
     }
 
     fn search(&mut self, scene: &Scene, shared: Option<&SharedParts>) -> Result<Option<StaticStart>, BuildError> {

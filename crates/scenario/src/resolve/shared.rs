@@ -7,6 +7,7 @@ use crate::beam_measures::BeamMeasures;
 use crate::diagnostic::Diagnostics;
 use crate::document::Document;
 use crate::driven::SharedBeam;
+use crate::equilibrium_key::EquilibriumKey;
 use crate::held::Held;
 use crate::scene::{AngleUnit, BeamScene, LengthUnit, MotionScene, RecordScene, Reduction};
 use crate::simulation::BuildError;
@@ -37,7 +38,7 @@ pub struct SharedParts {
     used: Mutex<Held<(RecordKeys, Placed), RecordScene>>,
     tables: Mutex<Held<TableKeys, Table>>,
     beams: Mutex<Held<(BeamSpec, Option<Reduction>), SharedBeam>>,
-    settled: Mutex<Held<String, Settled>>,
+    settled: Mutex<Held<EquilibriumKey, Settled>>,
     /// Of beams, for warnings.
     pub(super) measures: BeamMeasures,
     units: OnceLock<(Option<LengthUnit>, Option<AngleUnit>)>,
@@ -186,9 +187,13 @@ impl SharedParts {
     }
 
     /// A configuration in equilibrium, from earlier or found now.
-    pub(crate) fn settled<E>(&self, key: String, find: impl FnOnce() -> Result<Settled, E>) -> Result<Arc<Settled>, E> {
+    pub(crate) fn settled<E>(
+        &self,
+        key: EquilibriumKey,
+        find: impl FnOnce() -> Result<Settled, E>,
+    ) -> Result<Arc<Settled>, E> {
         let count = |_: &Settled| _ = self.counts.settled.fetch_add(1, Ordering::Relaxed);
-        let size = key.len();
+        let size = key.size();
         Held::try_find_or(&self.settled, key, MOST_BEAMS, || find().inspect(count), |of| size + of.size())
     }
 
