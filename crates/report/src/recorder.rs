@@ -155,7 +155,7 @@ impl<'a> Recorder<'a> {
         layout: &'a Layout,
         tell: &'a mut dyn FnMut(&str),
     ) -> Result<Self, ResultsError> {
-        Self::fresh(|k, header| results.table(TABLES[k], header), scene, layout, tell)
+        Self::fresh(|k, header| results.table(TABLES[k], &header()), scene, layout, tell)
     }
 
     /// A recorder of a run of `scene` that writes no tables: for what a run shows and warns of.
@@ -172,7 +172,7 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// None today; as [`Recorder::new`].
     pub fn in_memory(scene: &Scene, layout: &'a Layout, tell: &'a mut dyn FnMut(&str)) -> Result<Self, ResultsError> {
-        let table = |k, _: &str| Ok(if k == 0 { Table::in_memory() } else { Table::nowhere() });
+        let table = |k, _: &dyn Fn() -> String| Ok(if k == 0 { Table::in_memory() } else { Table::nowhere() });
         Self::fresh(table, scene, layout, tell)
     }
 
@@ -184,28 +184,27 @@ impl<'a> Recorder<'a> {
         (header, std::str::from_utf8(self.trajectory.kept()).unwrap_or_default())
     }
 
-    /// Takes how blocks stand from what recorders of earlier runs found, and leaves there what it finds.
+    /// Takes how blocks stand and beams swing from what recorders of earlier runs found, and leaves there what it finds.
     #[must_use]
     pub fn sharing(mut self, stances: &Arc<SharedStances>) -> Self {
         self.fate_watch.share(stances);
+        self.watch.share(stances);
         self
     }
 
     fn fresh(
-        table: impl Fn(usize, &str) -> Result<Table, ResultsError>,
+        table: impl Fn(usize, &dyn Fn() -> String) -> Result<Table, ResultsError>,
         scene: &Scene,
         layout: &'a Layout,
         tell: &'a mut dyn FnMut(&str),
     ) -> Result<Self, ResultsError> {
         let sections = Sections::new(scene, layout);
         let (beams, section_values) = sections.empty(scene, layout);
-        let headers = [
-            &trajectory_header(layout, &sections, &Driven::of(scene, layout)),
-            contacts::HEADER,
-            IMPACTS_HEADER,
-            ENERGY_HEADER,
-        ]
-        .map(str::to_owned);
+        // Only of tables that are written.
+        let header = |k: usize| match k {
+            0 => trajectory_header(layout, &Sections::new(scene, layout), &Driven::of(scene, layout)),
+            _ => [contacts::HEADER, IMPACTS_HEADER, ENERGY_HEADER][k - 1].to_owned(),
+        };
         let kept = Kept {
             schedule: Schedule::new(scene.every, scene.time.steps(), scene.time.step),
             closings: ClosingMonitor::default(),
@@ -220,7 +219,7 @@ impl<'a> Recorder<'a> {
             travelled: 0.0,
             record: Record { beams, ..Record::default() },
         };
-        Self::with(|k| table(k, &headers[k]), kept, sections, scene, layout, tell)
+        Self::with(|k| table(k, &|| header(k)), kept, sections, scene, layout, tell)
     }
 
     /// Opens the tables of a run of `scene` again where a checkpoint left them; what was written past that goes.

@@ -356,8 +356,7 @@ impl Summary {
         ended: EndedWord,
         wall_seconds: f64,
     ) -> Self {
-        let records = scene.records().map(|of| RecordSummary::new(of)).collect();
-        Self { records, ..Self::without_records(scene, layout, state, record, ended, wall_seconds) }
+        Self::of_keys(&["records", "headline"], scene, layout, state, record, ended, wall_seconds)
     }
 
     /// As [`Self::new`] without the measures of its accelerograms, which take longer to find than all else of a short run.
@@ -370,6 +369,22 @@ impl Summary {
         ended: EndedWord,
         wall_seconds: f64,
     ) -> Self {
+        Self::of_keys(&["headline"], scene, layout, state, record, ended, wall_seconds)
+    }
+
+    /// As [`Self::new`] for the values under these [`KEYS`](Self::KEYS): what takes long, the measures of accelerograms and the headline, is
+    /// left empty unless it is among them.
+    #[must_use]
+    pub fn of_keys(
+        keys: &[&str],
+        scene: &Scene,
+        layout: &Layout,
+        state: &State,
+        record: &Record,
+        ended: EndedWord,
+        wall_seconds: f64,
+    ) -> Self {
+        let wanted = |key: &str| keys.contains(&key);
         let (ledger, tally) = (&state.ledger, &state.tally);
         let monitored = || layout.blocks.iter().zip(&record.rocking);
         let mut crossings: Vec<CrossingRow> = monitored()
@@ -393,7 +408,10 @@ impl Summary {
         let first =
             |of: fn(&BodyVerdict) -> Option<f64>, pick: fn(f64, f64) -> f64| verdict.iter().filter_map(of).reduce(pick);
         Self {
-            headline: headline(scene, state, &verdict, (&beams, &deflections)),
+            headline: match wanted("headline") {
+                true => headline(scene, state, &verdict, (&beams, &deflections)),
+                false => String::new(),
+            },
             max_phi_over_alpha: first(|of| of.max_phi_over_alpha, f64::max),
             overturned_at: first(|of| of.overturned_at, f64::min),
             rests_from: verdict
@@ -449,7 +467,10 @@ impl Summary {
             beams,
             deflections,
             verdict,
-            records: Vec::new(),
+            records: match wanted("records") {
+                true => scene.records().map(|of| RecordSummary::new(of)).collect(),
+                false => Vec::new(),
+            },
             horizon: record.horizon,
             ended,
             model: ModelSummary::new(scene, layout),

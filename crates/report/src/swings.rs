@@ -11,7 +11,10 @@
 
 use crate::probe::Probe;
 use crate::resolution::raise;
+use crate::verdict::SharedStances;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use teeter_beam::Beam;
 use teeter_integrator::State;
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::{BeamPlace, Layout};
@@ -53,6 +56,7 @@ pub(crate) struct Lost {
 pub(crate) struct Watch {
     beams: Vec<Watched>,
     theta: f64,
+    shared: Option<Arc<SharedStances>>,
 }
 
 /// Where to look at a beam, and how it swings.
@@ -61,8 +65,11 @@ struct Watched {
     /// Quarter points and middles between supports.
     places: Vec<Probe>,
     span: f64,
-    /// A beam that no frequency is known of is not watched.
-    swing: Option<Swing>,
+    beam: Arc<Beam>,
+    /// The shape from which it starts.
+    shape: Vec<f64>,
+    /// Found with the first step; a beam that no frequency is known of is not watched.
+    swing: Option<Option<Swing>>,
     /// The step size that the two below are for, s.
     step: f64,
     /// exp((iω − ζω)h).
@@ -74,13 +81,20 @@ struct Watched {
 impl Watch {
     pub(crate) fn of(scene: &Scene, layout: &Layout) -> Self {
         let watched = |place: &BeamPlace| {
-            let shape = scene.beams.iter().find(|beam| beam.name == place.name).map_or(&[][..], |beam| &beam.shape);
-            let swing = Swing::of(&place.beam, shape);
+            let of = scene.beams.iter().find(|beam| beam.name == place.name);
+            let shape = of.map(|beam| beam.shape.clone()).unwrap_or_default();
             let places = place.quarters().into_iter().map(|x| Probe::new(place, place.beam.shape_clamped(x))).collect();
             let span = place.beam.spec().span;
-            Watched { places, span, swing, step: 0.0, turn: [1.0, 0.0], more: [0.0, 0.0] }
+            let beam = Arc::clone(&place.beam);
+            Watched { places, span, beam, shape, swing: None, step: 0.0, turn: [1.0, 0.0], more: [0.0, 0.0] }
         };
-        Self { beams: layout.beams.iter().map(watched).collect(), theta: scene.time.theta_of_scheme() }
+        let (beams, theta) = (layout.beams.iter().map(watched).collect(), scene.time.theta_of_scheme());
+        Self { beams, theta, shared: None }
+    }
+
+    /// From now on swings are taken from there, and entered.
+    pub(crate) fn share(&mut self, shared: &Arc<SharedStances>) {
+        self.shared = Some(Arc::clone(shared));
     }
 
     /// Whether the steps take something out of a swing.
@@ -90,6 +104,13 @@ impl Watch {
 }
 
 impl Watched {
+    /// How the beam swings.
+    fn swing(&mut self, shared: Option<&SharedStances>) -> Option<Swing> {
+        let Self { beam, shape, swing, .. } = self;
+        let find = || Swing::of(beam, shape);
+        *swing.get_or_insert_with(|| shared.map_or_else(find, |shared| shared.swing(beam, shape, find)))
+    }
+
     /// Takes a step size in.
     fn with_step(&mut self, swing: Swing, theta: f64, h: f64) {
         if self.step == h {
@@ -113,7 +134,8 @@ impl Swings {
     pub(crate) fn observe(&mut self, watch: &mut Watch, layout: &Layout, h: f64, state: &State) -> f64 {
         let mut fastest = 0.0;
         for ((swung, watched), place) in self.0.iter_mut().zip(&mut watch.beams).zip(&layout.beams) {
-            if let Some(swing) = watched.swing {
+            let swing = watched.swing(watch.shared.as_deref());
+            if let Some(swing) = swing {
                 watched.with_step(swing, watch.theta, h);
             }
             let ([c, d], [r, s]) = (watched.turn, watched.more);
@@ -123,7 +145,7 @@ impl Swings {
                 let (w, rate) = (at.deflection(q), at.deflection(v));
                 raise(&mut fastest, rate.abs());
                 raise(&mut swung.most, w.abs());
-                let Some(swing) = watched.swing else { continue };
+                let Some(swing) = swing else { continue };
                 // a = 2ẇ/(iω) lies on the imaginary axis.
                 let a = -2.0 * rate / swing.omega;
                 let [x, y] = *off;
@@ -141,7 +163,7 @@ impl Swings {
         let parts = all.filter(|(_, (swung, watched))| swung.most > STILL * watched.span).filter_map(
             |(beam, (swung, watched))| {
                 let part = swung.worst / swung.most;
-                let frequency = watched.swing?.omega / std::f64::consts::TAU;
+                let frequency = watched.swing??.omega / std::f64::consts::TAU;
                 Some(Lost { beam, part, frequency, step: finer(step, part, watch.theta) })
             },
         );

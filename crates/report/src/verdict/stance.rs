@@ -7,7 +7,9 @@
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::{Arc, Mutex, PoisonError};
+use teeter_beam::Beam;
 use teeter_scenario::scene::BlockScene;
+use teeter_scenario::swing::Swing;
 
 /// The sides to which a block can go: the right (φ falls) and the left (φ rises).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -82,10 +84,16 @@ pub(crate) struct Outline {
     shared: Option<Arc<SharedStances>>,
 }
 
-/// How the blocks of one run after another stand, found once for the same block at the same angle: for
+/// How the blocks of one run after another stand, found once for the same block at the same angle, and how their beams swing: for
 /// [`Recorder::sharing`](crate::Recorder::sharing). It holds few of them, and may serve several threads.
 #[derive(Debug, Default)]
-pub struct SharedStances(Mutex<KnownStances>);
+pub struct SharedStances {
+    stances: Mutex<KnownStances>,
+    swings: Mutex<Vec<KnownSwing>>,
+}
+
+/// A beam with the shape from which it starts, and how it swings.
+type KnownSwing = (Arc<Beam>, Vec<f64>, Option<Swing>);
 
 #[derive(Debug, Default)]
 struct KnownStances {
@@ -97,15 +105,18 @@ struct KnownStances {
 /// Most stances that are held: those of a scene of some blocks.
 const MOST_STANCES: usize = 64;
 
+/// Most swings that are held, with their beams: those of a scene of some beams.
+const MOST_SWINGS: usize = 16;
+
 impl SharedStances {
     /// How many stances were searched for.
     #[must_use]
     pub fn searched(&self) -> u64 {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).searched
+        self.stances.lock().unwrap_or_else(PoisonError::into_inner).searched
     }
 
     fn find_or(&self, key: Vec<u64>, search: impl FnOnce() -> Option<Stance>) -> Option<Stance> {
-        let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let lock = || self.stances.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, stance)) = lock().entries.iter().find(|(known, _)| *known == key) {
             return *stance;
         }
@@ -117,6 +128,22 @@ impl SharedStances {
         }
         known.entries.push((key, stance));
         stance
+    }
+
+    /// How a beam swings that starts from this shape.
+    pub(crate) fn swing(&self, beam: &Arc<Beam>, shape: &[f64], find: impl FnOnce() -> Option<Swing>) -> Option<Swing> {
+        let lock = || self.swings.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_same = |(known, start, _): &&KnownSwing| Arc::ptr_eq(known, beam) && start == shape;
+        if let Some((.., swing)) = lock().iter().find(is_same) {
+            return *swing;
+        }
+        let swing = find();
+        let mut known = lock();
+        if known.len() == MOST_SWINGS {
+            known.clear();
+        }
+        known.push((Arc::clone(beam), shape.to_vec(), swing));
+        swing
     }
 }
 

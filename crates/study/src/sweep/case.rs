@@ -200,7 +200,7 @@ fn run_once(
         Ok(ended) => ended,
         Err(error) => return failed(error.to_string()),
     };
-    let (header, rows) = recorder.trajectory();
+    let (header, rows) = if wanted.is_empty() { Default::default() } else { recorder.trajectory() };
     let columns = Columns::read(&header, rows, &wanted);
     let record = recorder.into_record();
     let state = &simulation.state;
@@ -210,14 +210,11 @@ fn run_once(
         EndedWord::Complete | EndedWord::Stopped => String::new(),
         _ => Failure::unless_complete(ended, state.t).err().map_or_else(String::new, |error| error.to_string()),
     };
-    let mut paths = sweep.outputs().iter().filter_map(Output::summary_path);
-    let summary = if sweep.outputs().iter().any(Output::needs_summary) {
-        let of_records = paths.any(|path| path.split('.').next() == Some("records"));
-        let summary = if of_records { Summary::new } else { Summary::without_records };
-        Some(summary(&scene, &layout, state, &record, word, 0.0))
-    } else {
-        None
-    };
+    let summary = sweep.outputs().iter().any(Output::needs_summary).then(|| {
+        let paths = sweep.outputs().iter().filter_map(Output::summary_path);
+        let keys: Vec<&str> = paths.filter_map(|path| path.split('.').next()).collect();
+        Summary::of_keys(&keys, &scene, &layout, state, &record, word, 0.0)
+    });
     let outputs = sweep.outputs().iter().map(|output| output.cell(summary.as_ref(), &columns, &scene)).collect();
     let mut warnings: Vec<String> = record.warnings.warnings().iter().map(|warning| warning.code.to_string()).collect();
     // Rows of all steps are as close as they can be.
