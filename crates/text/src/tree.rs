@@ -116,7 +116,20 @@ pub(crate) fn lenient_value(text: &str, origin: Origin) -> Node {
     if let Some(raw) = plain(text) {
         return Node { raw, origin, written: printable(text) };
     }
-    parsed_leniently(text, origin)
+    if has_unit(text) { untyped(text, origin) } else { parsed_leniently(text, origin) }
+}
+
+/// Whether a text is a plain number with a unit behind a space, which is no value in TOML without quotes.
+fn has_unit(text: &str) -> bool {
+    let number = text.strip_prefix('-').unwrap_or(text);
+    let rest = number.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
+    rest.len() < number.len()
+        && rest.strip_prefix(' ').is_some_and(|unit| unit.starts_with(|c: char| c.is_ascii_alphabetic()))
+}
+
+/// A string without quotes.
+fn untyped(text: &str, origin: Origin) -> Node {
+    Node { raw: Raw::Text(text.to_owned()), origin, written: printable(&format!("\"{text}\"")) }
 }
 
 /// A value whose TOML is what it looks like: every case of a study has dozens of them, derived and by
@@ -150,7 +163,7 @@ fn parsed_leniently(text: &str, origin: Origin) -> Node {
     let source = SourceText::new("", text);
     match DeValue::parse(text) {
         Ok(value) => TreeBuilder { source: &source, origin: Some(origin) }.node(&value),
-        Err(_) => Node { raw: Raw::Text(text.to_owned()), origin, written: printable(&format!("\"{text}\"")) },
+        Err(_) => untyped(text, origin),
     }
 }
 
@@ -201,6 +214,16 @@ mod tests {
             "nan",
             "0x1f",
             "50 us",
+            "-0.5 rad/s",
+            "1.2.3 m",
+            "1 e5",
+            "1 t07:32:00Z",
+            "1 m # long",
+            "1 m\n",
+            "1 \"m\"",
+            "1 # m",
+            "- m",
+            " m",
             " 1",
             "1 ",
             "1.2.3",
@@ -222,5 +245,6 @@ mod tests {
         }
         // And they do take the short way.
         assert!(["true", "\"50 us\"", "0.5", "-12"].iter().all(|text| plain(text).is_some()));
+        assert!(has_unit("50 us") && has_unit("-0.5 rad/s") && !has_unit("1 # m") && !has_unit("- m"));
     }
 }
