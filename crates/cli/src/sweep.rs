@@ -14,8 +14,8 @@ use teeter_run::SceneSource;
 use teeter_scenario::diagnostic::Diagnostics;
 use teeter_study::sweep::{
     COARSE_ROWS, Ensemble, FIGURE_FILES, FILES, IDENTITY, Journal, JournalError, RESULTS, Shard, Sweep, SweepIdentity,
-    Tally, ended_study, incomparable, matching_files, merge, run_cases, study_figures, study_page, write_parquet,
-    write_results,
+    Tally, counted, ended_study, incomparable, matching_files, merge, run_cases, study_figures, study_page,
+    write_parquet, write_results,
 };
 use teeter_study::{StudyScene, runner};
 
@@ -247,11 +247,6 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
 
 /// How many outputs a warning names.
 const MOST_NAMED: usize = 3;
-
-/// A number of cases in words.
-fn counted(cases: u64) -> String {
-    if cases == 1 { "1 case".to_owned() } else { format!("{cases} cases") }
-}
 
 /// What the user should know of the rows.
 fn notes(console: Console, sweep: &Sweep, tally: &Tally) {

@@ -64,9 +64,9 @@ impl Criterion {
     /// In how many cases it holds, as a sentence.
     pub(crate) fn counted(&self, events: usize, cases: usize) -> String {
         match self {
-            Self::Overturned => format!("A block overturns in {events} of {}.", super::figures::counted(cases)),
+            Self::Overturned => format!("A block overturns in {events} of {}.", super::counted(cases as u64)),
             Self::Above { output, value } => {
-                format!("{output} is above {value} in {events} of {}.", super::figures::counted(cases))
+                format!("{output} is above {value} in {events} of {}.", super::counted(cases as u64))
             }
         }
     }

@@ -41,4 +41,4 @@ pub use output::Output;
 pub use parquet::{ParquetTableError, parquet_table};
 pub(crate) use sample::mixed;
 pub use shard::{Shard, ShardError};
-pub use tally::Tally;
+pub use tally::{Tally, counted};

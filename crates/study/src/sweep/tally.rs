@@ -70,6 +70,12 @@ impl Tally {
     }
 }
 
+/// A number of cases in words: `1 case`, `12 cases`.
+#[must_use]
+pub fn counted(cases: u64) -> String {
+    if cases == 1 { "1 case".to_owned() } else { format!("{cases} cases") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

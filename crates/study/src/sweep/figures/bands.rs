@@ -1,9 +1,10 @@
 //! Bands of a motion over an ensemble: what remains to be said of it beyond the horizon of a single run.
 
+use super::super::counted;
 use super::super::output::Output;
 use super::super::spec::{Node, Reader, entries};
 use super::label::{common, quantity};
-use super::{Ensemble, StudyFigure, counted, digits, text};
+use super::{Ensemble, StudyFigure, digits, text};
 use crate::write::quoted;
 use std::fmt::Write;
 use teeter_plot::{Axis, AxisError, Figure, Legend, Panel, Series};
@@ -132,7 +133,7 @@ fn survivors(rows: &[Row], until: Option<f64>) -> Option<String> {
     let end = until.filter(|until| *until > last.t);
     let from = fewer.map(|row| row.t).or(end)?;
     let left = if end.is_some() { 0 } else { last.cases };
-    Some(format!("from t = {} s on fewer than all {}, {left} at the end", digits(from), counted(most)))
+    Some(format!("from t = {} s on fewer than all {}, {left} at the end", digits(from), counted(most as u64)))
 }
 
 /// The figure of one study, or of several side by side.
@@ -176,7 +177,7 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
             if last.cases < FEWEST {
                 notes.push(study.about(&format!(
                     "{}: the band of 95 % goes nearly from the least to the largest of them; {FEWEST} or more have some outside it.",
-                    counted(last.cases)
+                    counted(last.cases as u64)
                 )));
             }
         }

@@ -10,9 +10,9 @@ mod overturning;
 mod page;
 mod table;
 
-use super::Sweep;
 use super::output::Output;
 use super::spec::{Node, Reader};
+use super::{Sweep, counted};
 use crate::write::typeset;
 pub(crate) use bands::Bands;
 pub use comparable::incomparable;
@@ -128,13 +128,8 @@ impl Ensemble {
     fn left_out(&self, cases: usize, what: &str) -> String {
         let name = if self.name.is_empty() { String::new() } else { format!("`{}`: ", self.name) };
         let are = if cases == 1 { "is" } else { "are" };
-        format!("{name}{} without {what} {are} left out.", counted(cases))
+        format!("{name}{} without {what} {are} left out.", counted(cases as u64))
     }
-}
-
-/// A number of cases.
-pub(super) fn counted(cases: usize) -> String {
-    if cases == 1 { "1 case".to_owned() } else { format!("{cases} cases") }
 }
 
 /// Room below and above axes of shares, so that curves at 0 and 1 aren't hidden by the frame.

@@ -1,9 +1,10 @@
 //! Maps of overturning over two keys.
 
+use super::super::counted;
 use super::super::criterion::Criterion;
 use super::super::spec::{Node, Reader, entries};
 use super::label::label;
-use super::{Ensemble, StudyFigure, counted, text};
+use super::{Ensemble, StudyFigure, text};
 use std::fmt::Write;
 use teeter_plot::{Axis, AxisError, Figure, Legend, Panel, Series};
 use toml::de::DeTable;
@@ -170,7 +171,7 @@ pub(super) fn figure(study: &Ensemble, asked: &Overturning) -> Result<StudyFigur
     }
     let mut notes = vec![asked.event.counted(events, cases)];
     if study.table.incomplete() > 0 {
-        notes.push(format!("{} without a result are left blank.", counted(study.table.incomplete())));
+        notes.push(format!("{} without a result are left blank.", counted(study.table.incomplete() as u64)));
     }
     let title = format!("Where {}", asked.event.clause());
     let blank = match study.table.incomplete() {

@@ -1,7 +1,8 @@
 //! `study.html`: a self-contained page in the style of a run's report.
 
+use super::super::counted;
 use super::label::label;
-use super::{Ensemble, StudyFigure, counted};
+use super::{Ensemble, StudyFigure};
 use crate::write::{html_list, html_table};
 use std::fmt::Write;
 use teeter_plot::escaped;
@@ -25,7 +26,7 @@ pub fn study_page(title: &str, studies: &[Ensemble], figures: &[StudyFigure]) ->
             some => format!(", {some} with warnings"),
         };
         let name = if studies.len() > 1 { format!("{}: ", study.name) } else { String::new() };
-        format!("{name}{}{failed}{warned}", counted(study.table.len()))
+        format!("{name}{}{failed}{warned}", counted(study.table.len() as u64))
     };
     let subtitle = studies.iter().map(told).collect::<Vec<_>>().join(" · ");
     let subtitle = format!("{subtitle} · teeter {}", env!("CARGO_PKG_VERSION"));
