@@ -1,6 +1,7 @@
 //! Measured motion of a block: a table of any layout, read, turned into SI units, and, where it
 //! holds coordinates of markers, into the motion of the block by a rigid fit.
 
+mod columns;
 mod layout;
 mod markers;
 mod motion;
