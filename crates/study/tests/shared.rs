@@ -88,6 +88,9 @@ fn the_second_case_makes_no_beam_factor_equilibrium_or_table_again() {
     let frictions = ["0.5", "0.4", "0.5"].map(|friction| vec![("contact.feet.friction", friction)]);
     let counts = assert_same("sweeps/block-on-beam.toml", &frictions).counts();
     assert_eq!((counts.beams, counts.equilibria, counts.factors), (1, 2, first.factors));
+    // Nothing strikes in it.
+    let restitutions = ["0", "0.3"].map(|restitution| vec![("contact.feet.restitution", restitution)]);
+    assert_eq!(assert_same("sweeps/block-on-beam.toml", &restitutions).counts().equilibria, 1);
 }
 
 #[test]
