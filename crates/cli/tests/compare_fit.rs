@@ -624,6 +624,12 @@ fn a_flat_fall_is_aligned_by_its_height_and_wrong_units_are_guessed() {
         text.contains("(assumed: no quantity that would tell the side") && !text.contains("hardly match"),
         "{text}"
     );
+    // A fit chooses the side as a comparison does, and says how.
+    let varied = ["--vary", "contact.base.restitution=0.7..0.9", "--samples", "4", "--out", "fitted", "--force"];
+    for (sign, origin) in [(&[][..], "(assumed: no quantity that would tell the side"), (&["--sign", "1"], "(given)")] {
+        let text = done(&folder, &[&["fit", &scene, "fall.csv"], &varied[..], sign].concat());
+        assert!(text.contains("seen as in the scene") && text.contains(origin), "{text}");
+    }
     // A run that turns, matched by its height: the angles are apart, and by no constant.
     done(&folder, &["run", &scene, "--out", "turned", "--quiet", "--no-report", "--set", "block.cube.angle=2 deg"]);
     let text = done(&folder, &["compare", "turned", "fall.csv"]);

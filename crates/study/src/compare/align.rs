@@ -106,25 +106,16 @@ fn align_without(
     off: &[(usize, usize)],
 ) -> Aligned {
     let start = trace.at(0.0).map_or(0.0, |motion| motion.of(Channel::Phi));
-    // Beside how well it fits what tells the side.
+    // Beside how well it fits from there.
     let seen_from = |sign: Sign| {
         let mut motion = measured.motion(sign);
         set_zero(&mut motion, sign.factor() * offset, start);
-        let counted = without(&motion, off);
-        let search = Search::new(&counted, trace, end);
-        let (shift, mismatch) = match settings.shift {
-            Some(shift) => (shift, search.mismatch(shift).unwrap_or(f64::INFINITY)),
-            None => search.best(),
-        };
-        let (of_side, tells_side) = if search.channel.is_mirrored() {
-            (mismatch, true)
-        } else {
-            side_mismatch(&counted, trace, end, shift).map_or((mismatch, false), |of_side| (of_side, true))
-        };
+        let SideFit { shift, mismatch, from_here, tells_side, by } =
+            SideFit::of(&without(&motion, off), trace, end, settings.shift);
         let shift_found = settings.shift.is_none();
         let sign_found = settings.sign.is_none() && tells_side;
-        let alignment = Alignment { shift, shift_found, sign, sign_found, by: search.channel, mismatch };
-        (of_side, Aligned { alignment, motion, outliers: Vec::new() })
+        let alignment = Alignment { shift, shift_found, sign, sign_found, by, mismatch };
+        (from_here, Aligned { alignment, motion, outliers: Vec::new() })
     };
     if let Some(sign) = settings.sign {
         return seen_from(sign).1;
@@ -134,10 +125,41 @@ fn align_without(
     if reversed.0 < as_is.0 { reversed.1 } else { as_is.1 }
 }
 
-/// The mismatch of the quantity that tells best from which side a motion was seen, with a time shift; `None` if there is none above its noise.
-pub(crate) fn side_mismatch(motion: &MeasuredMotion, trace: &MotionTrace, end: f64, shift: f64) -> Option<f64> {
-    let channel = motion.telling_side()?;
-    Search::of(channel, motion, trace, end).mismatch(shift)
+/// How a motion as seen from one side fits a run.
+pub(crate) struct SideFit {
+    /// The time shift, s.
+    pub(crate) shift: f64,
+    /// The mismatch of the leading quantity, by which they are aligned; infinite if too little of them is at the same time.
+    pub(crate) mismatch: f64,
+    /// With it that of the quantity that tells the side, where the leading one looks the same from both, as a fall does. Of the two
+    /// sides that with the smaller one is right.
+    pub(crate) from_here: f64,
+    /// Whether any quantity above its noise tells the side.
+    pub(crate) tells_side: bool,
+    by: Channel,
+}
+
+impl SideFit {
+    /// That of a motion and a run up to time `end` (s), with a given shift (s) or the best.
+    pub(crate) fn of(motion: &MeasuredMotion, trace: &MotionTrace, end: f64, shift: Option<f64>) -> Self {
+        let search_of = |channel: Channel| {
+            let mut search = Search::of(channel, motion, trace, end);
+            // How much of the motions a given shift leaves to compare is not for the search to say.
+            search.window.fewest = if shift.is_some() { FEWEST_ROWS } else { search.window.fewest };
+            search
+        };
+        let by = motion.leading();
+        let leading = search_of(by);
+        let (shift, mismatch) = match shift {
+            Some(shift) => (shift, leading.mismatch(shift).unwrap_or(f64::INFINITY)),
+            None => leading.best(),
+        };
+        if by.is_mirrored() {
+            return Self { shift, mismatch, from_here: mismatch, tells_side: true, by };
+        }
+        let telling = motion.telling_side().and_then(|channel| search_of(channel).mismatch(shift));
+        Self { shift, mismatch, from_here: mismatch + telling.unwrap_or(0.0), tells_side: telling.is_some(), by }
+    }
 }
 
 /// Takes the zero of the angle out of a measured motion.

@@ -11,7 +11,7 @@ mod trace;
 mod write;
 
 pub use align::{Aligned, Alignment, AlignmentSettings, align};
-pub(crate) use align::{FINE, golden, mismatch_and_shift, mismatch_of, set_zero, side_mismatch};
+pub(crate) use align::{FINE, SideFit, golden, mismatch_and_shift, mismatch_of, set_zero};
 pub use constant::Constant;
 pub use cycles::{HalfCycle, HalfCyclePair, ImpactPair, Swing, pair_half_cycles, pair_impacts, swing};
 pub use differences::{ChannelComparison, Differences};
@@ -19,7 +19,7 @@ pub(crate) use trace::Tracer;
 pub use trace::{MotionTrace, TraceError};
 pub use write::sentences_of;
 pub use write::{FILES, half_cycle_csv, impact_csv, json, page, rows_csv, svg_figures};
-pub(crate) use write::{STYLE, fixed, horizon_note, motion_figures, outliers};
+pub(crate) use write::{STYLE, fixed, horizon_note, motion_figures, origin_of_side, outliers};
 
 use crate::measured::{Channel, LocalFit, Measured, MeasuredMotion, local_fit};
 

@@ -12,7 +12,7 @@ pub use confidence::{Estimate, TradeOff};
 pub use keys::FitKey;
 pub use write::{FILES, csv, figures, json, page, sentences};
 
-use crate::compare::{AlignmentSettings, CompareSettings, Comparison, mismatch_and_shift, set_zero, side_mismatch};
+use crate::compare::{AlignmentSettings, CompareSettings, Comparison, SideFit, set_zero};
 use crate::measured::{Measured, Sign};
 use crate::sweep::sample::{Method, Sampler};
 use crate::{Failure, Setting, StudyScene, divergence, runner};
@@ -92,6 +92,9 @@ pub struct Fit {
     pub horizon: f64,
     /// The measured and the fitted motion.
     pub comparison: Comparison,
+    /// Whether the side from which the motion was seen was given: otherwise it was found, or assumed, as
+    /// [`Alignment`](crate::compare::Alignment) of the comparison says.
+    pub sign_given: bool,
     /// The measured motion and that of the scene before the fit, if it runs.
     pub before: Option<Comparison>,
 }
@@ -203,7 +206,7 @@ impl Fit {
         let Inputs { source, resolved, measured, keys, cancel, .. } = inputs;
         let mut evaluations = Vec::new();
         let own = own_values(resolved, keys);
-        let (mut objective, starts) = search(inputs, settings, own.as_deref(), &mut evaluations, report)?;
+        let (mut objective, side_found, starts) = search(inputs, settings, own.as_deref(), &mut evaluations, report)?;
         // The rows that count end at the horizon of the best values so far, and then at that of the
         // fitted ones.
         let mut until = objective.until;
@@ -261,7 +264,7 @@ impl Fit {
             Comparison::of(measured, trace, compare).map(|mut comparison| {
                 // For the comparison they are given; here they were fitted unless the user gave them.
                 comparison.alignment.shift_found = settings.alignment.shift.is_none();
-                comparison.alignment.sign_found = settings.alignment.sign.is_none();
+                comparison.alignment.sign_found = side_found;
                 comparison
             })
         };
@@ -293,6 +296,7 @@ impl Fit {
             evaluations,
             horizon,
             comparison,
+            sign_given: settings.alignment.sign.is_some(),
             before,
         })
     }
@@ -353,14 +357,14 @@ fn si_of(key: &FitKey) -> f64 {
 }
 
 /// Tries values all over the ranges, seen from both sides if that isn't given; returns the best,
-/// best first.
+/// best first, and whether the side was found.
 fn search<'a>(
     inputs: Inputs<'a>,
     settings: &FitSettings,
     own: Option<&[f64]>,
     evaluations: &mut Vec<Evaluation>,
     report: &mut ReportFit<'_>,
-) -> Result<(Objective<'a>, Vec<Trial>), FitError> {
+) -> Result<(Objective<'a>, bool, Vec<Trial>), FitError> {
     let Inputs { source, resolved, block, measured, keys, cancel } = inputs;
     let start = initial_angle(resolved, block);
     let objective = |sign: Sign| {
@@ -391,23 +395,17 @@ fn search<'a>(
     let work = |at: &Vec<f64>| {
         // One run serves both sides.
         let trace = objectives[0].trace(&objectives[0].setting(at))?;
-        let each = objectives.iter().map(|objective| match settings.alignment.shift {
-            Some(_) => mismatch_of_given(objective, &trace),
-            None => {
-                let (shift, mismatch) = mismatch_and_shift(&objective.motion, &trace, objective.until);
-                // What aligns them may look the same from both sides, as a fall does.
-                let tells_side = objectives.len() == 1 || objective.motion.leading().is_mirrored();
-                let of_side = || side_mismatch(&objective.motion, &trace, objective.until, shift);
-                (shift, if tells_side { mismatch } else { mismatch + of_side().unwrap_or(0.0) })
-            }
-        });
-        Ok::<Vec<(f64, f64)>, Failure>(each.collect())
+        let of_side = |of: &Objective<'_>| SideFit::of(&of.motion, &trace, of.until, settings.alignment.shift);
+        Ok::<Vec<SideFit>, Failure>(objectives.iter().map(of_side).collect())
     };
+    // A given side needs no quantity that tells it.
+    let mismatch = |of: &SideFit| if settings.alignment.sign.is_some() { of.mismatch } else { of.from_here };
     let results = runner::in_order(&places, settings.threads, cancel, work, |_| {
         done += 1;
         report("values all over the ranges", done, total);
     });
-    let mut ranked: Vec<(usize, f64, usize)> = Vec::new();
+    // The side, its mismatch, whether anything tells it, and the number of the values.
+    let mut ranked: Vec<(usize, f64, bool, usize)> = Vec::new();
     let mut why = "no run came to its end".to_owned();
     for (number, result) in results.into_iter().enumerate() {
         let cost = match result {
@@ -417,24 +415,23 @@ fn search<'a>(
                 f64::INFINITY
             }
             Some(Ok(sides)) => {
-                for (side, (_, mismatch)) in sides.iter().enumerate() {
-                    ranked.push((side, *mismatch, number));
-                }
-                sides.iter().map(|side| side.1).fold(f64::INFINITY, f64::min)
+                ranked.extend(sides.iter().enumerate().map(|(side, of)| (side, mismatch(of), of.tells_side, number)));
+                sides.iter().map(mismatch).fold(f64::INFINITY, f64::min)
             }
         };
         let values = keys.iter().zip(&places[number]).map(|(key, share)| key.at(*share)).collect();
         evaluations.push(Evaluation { stage: "samples", values, cost, until: None });
     }
-    ranked.retain(|(_, mismatch, _)| mismatch.is_finite());
+    ranked.retain(|(_, mismatch, ..)| mismatch.is_finite());
     ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let Some(&(side, ..)) = ranked.first() else { return Err(FitError::NoMotion(why)) };
+    let Some(&(side, _, tells_side, _)) = ranked.first() else { return Err(FitError::NoMotion(why)) };
     let chosen = objectives.into_iter().nth(side).ok_or(FitError::Interrupted)?;
     let near = ranked.iter().filter(|(other, ..)| *other == side).map(|(.., number)| *number);
     let is_own = |number: usize| own.is_some() && number == 0;
     let starts: Vec<Trial> =
         started_from(near, is_own).filter_map(|n| chosen.trial_anywhere(&places[n]).ok()).collect();
-    if starts.is_empty() { Err(FitError::NoMotion(why)) } else { Ok((chosen, starts)) }
+    let side_found = settings.alignment.sign.is_none() && tells_side;
+    if starts.is_empty() { Err(FitError::NoMotion(why)) } else { Ok((chosen, side_found, starts)) }
 }
 
 /// The first of the ranked numbers, and the scene's own: far off at the end of the motion they may be ranked behind
@@ -462,12 +459,6 @@ fn distinct(trials: Vec<Trial>, reach: f64) -> Vec<Trial> {
     }
     kept.truncate(STARTS + 1);
     kept
-}
-
-/// The mean square difference with a given shift, relative to the noise.
-fn mismatch_of_given(objective: &Objective<'_>, trace: &crate::compare::MotionTrace) -> (f64, f64) {
-    let shift = objective.shift.unwrap_or(0.0);
-    (shift, objective.cost_of(trace, shift))
 }
 
 type Start = Point<(f64, Option<Trial>)>;

@@ -115,11 +115,6 @@ impl<'a> Objective<'a> {
         Trial { at: at.to_vec(), trace, shift, offset, residuals, cost }
     }
 
-    /// Mean square of the differences over their noise with a time shift.
-    pub(super) fn cost_of(&self, trace: &MotionTrace, shift: f64) -> f64 {
-        self.residuals(trace, shift, shift).2
-    }
-
     /// The rows that are compared with a time shift.
     pub(super) fn rows(&self, trace: &MotionTrace, shift: f64) -> std::ops::Range<usize> {
         let begin = if trace.is_held() { f64::NEG_INFINITY } else { 0.0 };

@@ -1,7 +1,7 @@
 //! What a fit writes.
 
 use super::{Estimate, Fit};
-use crate::compare::{Alignment, STYLE, fixed, horizon_note, motion_figures, outliers, sentences_of};
+use crate::compare::{Alignment, STYLE, fixed, horizon_note, motion_figures, origin_of_side, outliers, sentences_of};
 use crate::measured::Sign;
 use crate::write::{html_list, html_table, percent, power, short};
 use serde_json::{Value, json};
@@ -299,7 +299,7 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
             Sign::AsIs => "seen as in the scene: its sign is that of the run",
             Sign::Reversed => "seen from behind: its sign is turned (--sign -1)",
         },
-        if sign_found { "found" } else { "given" }
+        origin_of_side(sign_found, fit.sign_given)
     ));
     texts.push("the 95 % intervals hold if the keys that were not varied have the right values".to_owned());
     texts.push(match fit.restarts.get(1) {

@@ -11,8 +11,8 @@ pub use figure::svg_figures;
 pub use json::json;
 pub use page::page;
 pub(crate) use page::{STYLE, fixed, horizon_note};
-pub(crate) use sentences::outliers;
 pub use sentences::sentences_of;
+pub(crate) use sentences::{origin_of_side, outliers};
 pub use table::{half_cycle_csv, impact_csv, rows_csv};
 
 /// All files that a comparison may write; the figures depend on the table.

@@ -28,11 +28,6 @@ fn coarse_run(comparison: &Comparison) -> Option<String> {
 #[must_use]
 pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
     let Comparison { alignment, settings, measured, .. } = comparison;
-    let how = |found: bool| if found { "found" } else { "given" };
-    let how_side = match (alignment.sign_found, settings.alignment.sign) {
-        (false, None) => "assumed: no quantity that would tell the side rises above its noise",
-        (found, _) => how(found),
-    };
     let side = match alignment.sign {
         Sign::AsIs => "seen as in the scene",
         Sign::Reversed => "seen from behind: its sign is turned",
@@ -40,8 +35,8 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
     let mut texts = vec![format!(
         "the measured motion at its t = 0 is that of the run at t = {} s ({}), {side} ({})",
         fixed(alignment.shift, 5),
-        how(alignment.shift_found),
-        how_side
+        if alignment.shift_found { "found" } else { "given" },
+        origin_of_side(alignment.sign_found, settings.alignment.sign.is_some())
     )];
     if alignment.by != Channel::Phi && alignment.shift_found && measured.values(Channel::Phi).is_some() {
         texts.push(format!(
@@ -122,6 +117,15 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
     );
     texts.extend(constant(comparison));
     texts
+}
+
+/// How the side is known from which a motion was seen.
+pub(crate) fn origin_of_side(found: bool, given: bool) -> &'static str {
+    match (found, given) {
+        (true, _) => "found",
+        (false, true) => "given",
+        (false, false) => "assumed: no quantity that would tell the side rises above its noise",
+    }
 }
 
 /// Most lines of outliers that are named.
