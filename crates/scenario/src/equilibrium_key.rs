@@ -16,11 +16,14 @@ pub(crate) struct EquilibriumKey {
     /// Its incline, rad, and whether it moves.
     ground: Option<(f64, bool)>,
     beams: Vec<(BeamSpec, f64, [bool; 3], Option<Reduction>)>,
-    blocks: Vec<([f64; 2], Option<Arc<[BlockPart]>>, Matter, Placement, [bool; 3])>,
+    blocks: Vec<BlockKey>,
     /// The blocks that are pushed.
     forces: Vec<usize>,
     loads: Vec<(usize, LoadKind)>,
 }
+
+/// Width and height, parts, matter, placement of a block, and which of its coordinates are prescribed.
+type BlockKey = ([f64; 2], Option<Arc<[BlockPart]>>, Matter, Placement, [bool; 3]);
 
 impl EquilibriumKey {
     /// That of the equilibrium sought from `start`.
