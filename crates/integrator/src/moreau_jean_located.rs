@@ -219,7 +219,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         let flights = model.body_count().min(crate::stage::RESERVED_CONTACTS);
         let numbers = 3 * contacts + Flights::NUMBERS * flights;
         self.lately.reserve(numbers);
-        self.flights.reserve(flights);
+        self.flights.reserve(flights, model.body_count());
         self.next_jump = NextJump::default();
         self.beside.iter_mut().for_each(|loads| loads.reserve(model.size().v));
         self.by_forces.resize(model.size().v, 0.0);

@@ -75,8 +75,9 @@ impl Flights {
     /// Numbers by which a scheme's memory holds a flight; the first of them is negative.
     pub(super) const NUMBERS: usize = 3;
 
-    pub(super) fn reserve(&mut self, flights: usize) {
+    pub(super) fn reserve(&mut self, flights: usize, bodies: usize) {
         self.held.reserve(flights);
+        self.stand.reserve(bodies);
     }
 
     pub(super) fn clear(&mut self) {
