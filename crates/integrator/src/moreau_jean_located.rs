@@ -22,7 +22,7 @@ use jump::NextJump;
 use locate::Hit;
 pub(crate) use locate::rate_at;
 use teeter_contact::Outcome;
-use teeter_detect::{Candidates, ContactId};
+use teeter_detect::{BodyId, Candidates, ContactId};
 use turn::Slide;
 
 /// The settings of [`MoreauJeanLocated`].
@@ -41,6 +41,9 @@ impl Default for MoreauJeanLocatedSettings {
 /// What it can't step.
 const FOLLOWERS: &str = "matrices that follow their coordinates: what energy they keep depends on the size of the step";
 
+/// Jumps of loads at which a step is divided, as more make a load that varies within it.
+const MOST_JUMPS: usize = 4;
+
 /// Steps for which a contact with something elastic pressed lately.
 const LATELY: f64 = 50.0;
 
@@ -48,6 +51,11 @@ const LATELY: f64 = 50.0;
 /// ground.
 pub(crate) fn is_elastic<const D: usize>(part: &Part<D>, index: usize, w: Weights, factors: &mut Factors<D>) -> bool {
     part.row > 0 && !part.is_prescribed() && factors.of(index, w).is_some_and(|factor| !factor.is_diagonal())
+}
+
+/// Whether a body can be in flight: it moves, and is no beam; what takes off from one has no place that is known so well.
+fn may_fly<const D: usize>(model: &Model<D>, elastic: &[bool], body: BodyId) -> bool {
+    model.moves(body) && model.owner(body).is_some_and(|(index, _, _)| elastic.get(index) == Some(&false))
 }
 
 /// W at an instant: M⁻¹.
@@ -232,7 +240,8 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         from.warm.reserve(contacts, D);
         from.memory.reserve(contacts);
         self.from = Some(Box::new(from));
-        work.reserve_phases(model, 2 * Self::MOST_IMPACTS + 1);
+        let jumps = if model.parts().iter().any(|part| part.traits.loaded) { MOST_JUMPS } else { 0 };
+        work.reserve_phases(model, 2 * Self::MOST_IMPACTS + jumps + 1);
         // A part of a step will need a factor of its own, and an impact that of the masses.
         work.factors(model, MASSES, &state.q, Keep::Pinned)?;
         work.factors(model, weights(0.5 * state.dt, THETA), &state.q, Keep::Once)?;
@@ -337,19 +346,20 @@ impl<const D: usize> MoreauJeanLocated<D> {
         span: &StepSpan,
         work: &mut Workspace<D>,
     ) -> Result<f64, StepError> {
-        let (mut left, mut impacts, mut struck) = (span.h, 0, true);
+        let (mut left, mut impacts, mut jumps, mut struck) = (span.h, 0, 0, true);
         self.unlocated = false;
         loop {
             let rest = StepSpan { start: from.t, end: span.end, h: left };
             self.step.begin(model, from, &rest, work)?;
             self.step.of_step = left / span.h;
             if impacts == 0 {
+                let whole = span.h / left;
                 for ((by_forces, free), v0) in self.by_forces.iter_mut().zip(&self.step.v_free).zip(&from.v) {
-                    *by_forces = free - v0;
+                    *by_forces = (free - v0) * whole;
                 }
             }
             let worth = |end: &f64| (end - from.t).min(span.end - end) > STEP_ROUNDING * span.h;
-            let jump = self.find_jump(model, &rest).filter(worth);
+            let jump = if jumps < MOST_JUMPS { self.find_jump(model, &rest, from.dt).filter(worth) } else { None };
             let rest = jump.map_or(rest, |end| StepSpan { end, h: end - from.t, ..rest });
             if jump.is_some() {
                 self.step.begin(model, from, &rest, work)?;
@@ -394,7 +404,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 self.take_part(model, from, &rest, outcome, work)?;
                 self.remember_lately(model, from, work);
                 if jump.is_some() {
-                    (left, struck) = (left - rest.h, true);
+                    (left, jumps, struck) = (left - rest.h, jumps + 1, true);
                     continue;
                 }
                 return Ok(penetration);
@@ -455,13 +465,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
     /// Remembers what bodies have drifted that take off in the part of the step from `from`, and forgets it of those that have landed.
     fn follow_flights(&mut self, model: &Model<D>, from: &State, work: &mut Workspace<D>) -> Result<(), StepError> {
         let Self { step, stays, flights, near, elastic, ids, .. } = self;
-        // What takes off from a beam has no place that is known so well.
-        let is_elastic = |(index, _, _): (usize, _, _)| elastic.get(index).copied().unwrap_or(true);
-        let is_rigid = |contact: &Contact<D>| {
-            model.spring(contact.law).is_none()
-                && !contact.sides.iter().any(|side| model.owner(side.body).is_some_and(is_elastic))
-        };
-        if flights.land(model, step.stage.contacts(), stays, is_rigid) {
+        let contacts = step.stage.contacts();
+        flights.land(model, contacts, stays, |body| may_fly(model, elastic, body));
+        if flights.any_takes_off(contacts) {
             ids.clear();
             ids.extend(from.memory.active());
             work.locate(model, &from.q, ids, near)?;

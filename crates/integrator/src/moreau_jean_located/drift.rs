@@ -19,7 +19,7 @@ pub(super) struct Drift {
 impl Drift {
     /// What a body's closed contacts have drifted from their surfaces: their largest gap, and the spread of their gaps over that of their
     /// points.
-    pub(super) fn at<const D: usize>(model: &Model<D>, body: BodyId, closed: &[Candidate<D>]) -> Self {
+    fn at<const D: usize>(model: &Model<D>, body: BodyId, closed: &[Candidate<D>]) -> Self {
         let of_body = || contacts_of(model, body, closed);
         let Some((_, first)) = of_body().next() else { return Self::default() };
         let distance = |from: &Anchor<D>, to: &Anchor<D>| (to.point - from.point).norm();
@@ -32,7 +32,7 @@ impl Drift {
         Self { shift: least.abs().max(most.abs()), turn }
     }
 
-    pub(super) fn max(self, other: Self) -> Self {
+    fn max(self, other: Self) -> Self {
         Self { shift: self.shift.max(other.shift), turn: self.turn.max(other.turn) }
     }
 }
@@ -55,19 +55,20 @@ pub(super) fn contacts_of<'a, const D: usize>(
     rigid.filter_map(move |of| of.sides.iter().find(|side| side.body == body).map(|side| (of, side)))
 }
 
-/// What a body had drifted when it left its last closed contact, and has taken along into flight.
+/// What a body had drifted when it lost its support, and has taken along into flight.
 #[derive(Clone, Copy, Debug)]
 struct Flight {
     body: BodyId,
     drift: Drift,
 }
 
-/// What bodies in flight have drifted: one that has taken off without turning is tilted by that when it lands.
+/// What bodies in flight have drifted: one that has taken off without turning is tilted by that when it lands. A body flies while no
+/// closed contacts join it to ground or a beam, directly or by other bodies: two that fly together may touch each other.
 #[derive(Debug, Default)]
 pub(super) struct Flights {
     /// In order of the bodies.
     held: Vec<Flight>,
-    /// Which bodies have a closed contact; memory.
+    /// Which bodies are held up; memory.
     stand: Vec<bool>,
 }
 
@@ -106,44 +107,76 @@ impl Flights {
         found.map_or(Drift::default(), |at| self.held[at].drift)
     }
 
-    /// Forgets the flights of bodies that have landed: those with a contact that `stays` closed. Whether a body leaves its last closed
-    /// contact instead, so that [`Flights::take_off`] is due.
+    /// Forgets the flights of bodies that are held up after a part of a step or an impact, by contacts that stay closed.
     pub(super) fn land<const D: usize>(
         &mut self,
         model: &Model<D>,
         contacts: &[Contact<D>],
         stays: &[bool],
-        is_rigid: impl Fn(&Contact<D>) -> bool,
-    ) -> bool {
+        may_fly: impl Fn(BodyId) -> bool,
+    ) {
+        if self.held.is_empty() && contacts.iter().zip(stays).all(|(contact, stays)| *stays || !contact.persisting) {
+            // As before.
+            self.stand.clear();
+            return;
+        }
         let Self { held, stand } = self;
         stand.clear();
-        stand.resize(model.body_count(), false);
-        let staying = contacts.iter().zip(stays).filter(|(_, stays)| **stays);
-        for side in staying.flat_map(|(contact, _)| &contact.sides) {
-            if let Some(stands) = stand.get_mut(side.body.0 as usize) {
-                *stands = true;
-            }
-        }
+        stand.extend((0..model.body_count() as u32).map(|body| !may_fly(BodyId(body))));
+        // Forwards and back, so that a tower is done in two rounds, whichever way it is listed.
+        let staying = || contacts.iter().zip(stays).filter(|(_, stays)| **stays).map(|(contact, _)| contact);
+        while hold_up(stand, staying()) && hold_up(stand, staying().rev()) {}
         held.retain(|flight| stand.get(flight.body.0 as usize).is_some_and(|stands| !stands));
-        let leaves = |(contact, stays): (&Contact<D>, &bool)| {
-            let moves_off = |side: &Anchor<D>| model.moves(side.body) && !stand[side.body.0 as usize];
-            contact.persisting && !stays && contact.sides.iter().any(moves_off) && is_rigid(contact)
-        };
-        contacts.iter().zip(stays).any(leaves)
     }
 
-    /// Remembers what bodies have drifted that leave the last of these `closed` contacts, after [`Flights::land`].
+    /// Whether one of these contacts, which were closed, was of a body that flies now and didn't before: [`Flights::take_off`] is due.
+    pub(super) fn any_takes_off<const D: usize>(&self, contacts: &[Contact<D>]) -> bool {
+        let persisting = contacts.iter().filter(|contact| contact.persisting);
+        persisting.flat_map(|contact| &contact.sides).any(|side| self.takes_off(side.body))
+    }
+
+    /// After [`Flights::land`].
+    fn takes_off(&self, body: BodyId) -> bool {
+        self.stand.get(body.0 as usize).is_some_and(|stands| !stands)
+            && self.held.binary_search_by_key(&body, |flight| flight.body).is_err()
+    }
+
+    /// Remembers what bodies have drifted that lose their support; `closed` is what was closed before.
     pub(super) fn take_off<const D: usize>(&mut self, model: &Model<D>, closed: &[Candidate<D>]) {
-        for body in closed.iter().flat_map(|of| of.sides.map(|side| side.body)).filter(|body| model.moves(*body)) {
-            if self.stand[body.0 as usize] {
-                continue;
-            }
-            if let Err(at) = self.held.binary_search_by_key(&body, |flight| flight.body) {
-                let drift = Drift::at(model, body, closed);
-                if drift.turn > 0.0 {
-                    self.held.insert(at, Flight { body, drift });
-                }
+        for body in closed.iter().flat_map(|of| of.sides.map(|side| side.body)) {
+            if self.takes_off(body) {
+                let drift = self.with_neighbours(model, body, closed);
+                let at = self.held.partition_point(|flight| flight.body < body);
+                self.held.insert(at, Flight { body, drift });
             }
         }
     }
+
+    /// What a body's closed contacts have drifted from their surfaces, or it has taken along into flight; with that of the body that has
+    /// drifted most among those that it stands on, or that stand on it.
+    pub(super) fn with_neighbours<const D: usize>(
+        &self,
+        model: &Model<D>,
+        body: BodyId,
+        closed: &[Candidate<D>],
+    ) -> Drift {
+        let of = |body| Drift::at(model, body, closed).max(self.drift_of(body));
+        let neighbours = contacts_of(model, body, closed).flat_map(|(of, _)| of.sides.map(|side| side.body));
+        let moving = neighbours.filter(|other| *other != body && model.moves(*other));
+        of(body) + moving.map(of).fold(Drift::default(), Drift::max)
+    }
+}
+
+/// Lets what stands hold up what touches it, in the order of these contacts. Whether any more bodies stand.
+fn hold_up<'a, const D: usize>(stand: &mut [bool], contacts: impl Iterator<Item = &'a Contact<D>>) -> bool {
+    let mut any = false;
+    for contact in contacts {
+        let [a, b] = [0, 1].map(|side| contact.sides[side].body.0 as usize);
+        let stands = |body: usize| stand.get(body).copied().unwrap_or(true);
+        if stands(a) != stands(b) {
+            (stand[a], stand[b]) = (true, true);
+            any = true;
+        }
+    }
+    any
 }

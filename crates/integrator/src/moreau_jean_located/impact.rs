@@ -1,11 +1,11 @@
 //! An impact: places stand still, velocities jump.
 
 use super::drift::{Drift, contacts_of};
-use super::{MASSES, MoreauJeanLocated, rate_at};
+use super::{MASSES, MoreauJeanLocated, may_fly, rate_at};
 use crate::closed_step::{leaves, restitute};
 use crate::laws::is_impact;
 use crate::{
-    Contact, ContactError, Keep, Mismatch, Model, Over, PhaseEnd, PhaseKind, Responses, Rule, State, StepError, Vector,
+    ContactError, Keep, Mismatch, Model, Over, PhaseEnd, PhaseKind, Responses, Rule, State, StepError, Vector,
     Workspace,
 };
 use std::ops::Add;
@@ -73,9 +73,10 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 from.memory.insert(contact);
             }
         }
-        let is_rigid = |contact: &Contact<D>| model.spring(contact.law).is_none();
-        if self.flights.land(model, self.impact.contacts(), &self.stays, is_rigid) {
-            self.flights.take_off(model, &self.near);
+        let Self { impact, stays, flights, near, elastic, .. } = self;
+        flights.land(model, impact.contacts(), stays, |body| may_fly(model, elastic, body));
+        if flights.any_takes_off(impact.contacts()) {
+            flights.take_off(model, near);
         }
         let energy = self.step.step.work_of_impact(model, from, work, &self.impact, &self.v)?;
         let phase = PhaseEnd::new(PhaseKind::Impact, end, &from.q, &self.v).with_energy(energy).with_outcome(outcome);
@@ -154,13 +155,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
         Ok(())
     }
 
-    /// What a body's closed contacts have drifted from their surfaces, or it has taken along into flight; with that of the body that has
-    /// drifted most among those that it stands on, or that stand on it.
+    /// What a body may be off its place.
     fn drift_of(&self, model: &Model<D>, body: BodyId) -> Drift {
-        let of = |body| Drift::at(model, body, &self.near).max(self.flights.drift_of(body));
-        let neighbours = contacts_of(model, body, &self.near).flat_map(|(of, _)| of.sides.map(|side| side.body));
-        let moving = neighbours.filter(|other| *other != body && model.moves(*other));
-        of(body) + moving.map(of).fold(Drift::default(), Drift::max)
+        self.flights.with_neighbours(model, body, &self.near)
     }
 
     /// Whether a contact that doesn't touch takes part in the impact: what its bodies have drifted may be all of its gap, or it would touch

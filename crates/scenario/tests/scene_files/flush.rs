@@ -128,3 +128,19 @@ fn a_flight_goes_on_from_its_state() {
     assert_eq!((&whole.state.q, &whole.state.v), (&again.state.q, &again.state.v));
     assert!(whole.state.q[2].abs() < 2e-5, "{:?}", whole.state.q);
 }
+
+/// So do two blocks that fly together, one on the other: the lower one has lost the ground, though a contact with the upper one may stay.
+#[test]
+fn a_stack_that_is_thrown_up_from_rest_lands_flush() {
+    let upper = "[block.b]\ndensity = '2000 kg/m^3'\ndepth = '0.1 m'\nwidth = '0.1 m'\nheight = '0.1 m'\non = 'a'\nat = '0 m'\n";
+    for (jolt, restitution) in [("18.737", 0.0), ("18.737", 0.3), ("20", 0.0)] {
+        for step in ["1 ms", "250 us"] {
+            let text = thrown(restitution).replace("18.737", jolt) + upper;
+            let (simulation, seen) = run(&text, step);
+            for name in ["a", "b"] {
+                let [.., phi] = pose(&simulation, name);
+                assert!(phi.abs() < 5e-5, "{jolt} {restitution} {step} {name}: {phi}, {:?}", seen.impacts);
+            }
+        }
+    }
+}

@@ -559,3 +559,25 @@ fn a_slide_that_a_jump_of_a_load_starts_begins_in_time() {
         assert_eq!(seen.most_phases, 2, "{step}: one step is divided");
     }
 }
+
+/// A force along the ground that jumps between bounces changes none of them: how much of an approach is the work of forces in a step is
+/// told by the whole step, not by its part after the jump.
+#[test]
+fn bounces_are_those_without_a_jump() {
+    let scene = |more: &str| {
+        format!(
+            "[time]\nend = '600 ms'\n[ground]\n[block.b]\ndensity = '700 kg/m^3'\nwidth = '20 cm'\nheight = '10 cm'\ndepth = '10 cm'\n\
+             position = ['0 cm', '5.5 cm']\n[contact.c]\nbetween = ['b', 'ground']\nfriction = 0.0\nrestitution = 0.9\n{more}"
+        )
+    };
+    let (free, without) = run(&scene(""), "10 ms");
+    for start in ["419.9 ms", "422 ms", "426 ms", "426.2 ms", "426.28 ms"] {
+        let force = format!(
+            "[signal.s]\nshape = 'constant'\nstart = '{start}'\n[force.f]\non = 'b'\nforce = ['0.001 N', '0 N']\nsignal = 's'\n"
+        );
+        let (pushed, with) = run(&scene(&force), "10 ms");
+        assert_eq!(with.impacts.len(), without.impacts.len(), "{start}");
+        let off = (pose(&pushed, "b")[1] - pose(&free, "b")[1]).abs();
+        assert!(off < 1e-9, "{start}: {off}");
+    }
+}
