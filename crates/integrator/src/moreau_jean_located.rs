@@ -471,7 +471,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             ids.clear();
             ids.extend(from.memory.active());
             work.locate(model, &from.q, ids, near)?;
-            flights.take_off(model, near);
+            flights.take_off(model, near, from.t);
         }
         Ok(())
     }

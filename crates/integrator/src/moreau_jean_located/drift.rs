@@ -32,6 +32,14 @@ impl Drift {
         Self { shift: least.abs().max(most.abs()), turn }
     }
 
+    /// The same with that of the body that has drifted most among those that it stands on, or that stand on it.
+    pub(super) fn with_neighbours<const D: usize>(model: &Model<D>, body: BodyId, closed: &[Candidate<D>]) -> Self {
+        let neighbours = contacts_of(model, body, closed).flat_map(|(of, _)| of.sides.map(|side| side.body));
+        let moving = neighbours.filter(|other| *other != body && model.moves(*other));
+        let most = moving.map(|other| Self::at(model, other, closed)).fold(Self::default(), Self::max);
+        Self::at(model, body, closed) + most
+    }
+
     fn max(self, other: Self) -> Self {
         Self { shift: self.shift.max(other.shift), turn: self.turn.max(other.turn) }
     }
@@ -55,11 +63,14 @@ pub(super) fn contacts_of<'a, const D: usize>(
     rigid.filter_map(move |of| of.sides.iter().find(|side| side.body == body).map(|side| (of, side)))
 }
 
-/// What a body had drifted when it lost its support, and has taken along into flight.
+/// What tilt a body had drifted to when it lost its support, and has taken along into flight.
 #[derive(Clone, Copy, Debug)]
-struct Flight {
+pub(super) struct Flight {
     body: BodyId,
-    drift: Drift,
+    /// By what angle, rad.
+    pub(super) turn: f64,
+    /// When it took off, s.
+    pub(super) since: f64,
 }
 
 /// What bodies in flight have drifted: one that has taken off without turning is tilted by that when it lands. A body flies while no
@@ -91,20 +102,19 @@ impl Flights {
 
     /// Takes one up from its numbers. Add them in the order in which they were given out.
     pub(super) fn push(&mut self, numbers: &[f64]) {
-        if let [body, shift, turn] = *numbers {
-            self.held.push(Flight { body: BodyId(((-body) as u32).saturating_sub(1)), drift: Drift { shift, turn } });
+        if let [body, turn, since] = *numbers {
+            self.held.push(Flight { body: BodyId(((-body) as u32).saturating_sub(1)), turn, since });
         }
     }
 
     /// Gives out the numbers of all.
     pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {
-        self.held.iter().flat_map(|Flight { body, drift }| [-f64::from(body.0) - 1.0, drift.shift, drift.turn])
+        self.held.iter().flat_map(|Flight { body, turn, since }| [-f64::from(body.0) - 1.0, *turn, *since])
     }
 
-    /// What a body has taken along; nothing where it isn't in flight.
-    pub(super) fn drift_of(&self, body: BodyId) -> Drift {
-        let found = self.held.binary_search_by_key(&body, |flight| flight.body);
-        found.map_or(Drift::default(), |at| self.held[at].drift)
+    /// The flight of a body.
+    pub(super) fn of(&self, body: BodyId) -> Option<Flight> {
+        self.held.binary_search_by_key(&body, |flight| flight.body).ok().map(|at| self.held[at])
     }
 
     /// Forgets the flights of bodies that are held up after a part of a step or an impact, by contacts that stay closed.
@@ -137,33 +147,19 @@ impl Flights {
 
     /// After [`Flights::land`].
     fn takes_off(&self, body: BodyId) -> bool {
-        self.stand.get(body.0 as usize).is_some_and(|stands| !stands)
-            && self.held.binary_search_by_key(&body, |flight| flight.body).is_err()
+        self.stand.get(body.0 as usize).is_some_and(|stands| !stands) && self.of(body).is_none()
     }
 
-    /// Remembers what bodies have drifted that lose their support; `closed` is what was closed before.
-    pub(super) fn take_off<const D: usize>(&mut self, model: &Model<D>, closed: &[Candidate<D>]) {
+    /// Remembers what bodies have drifted that lose their support at time `t` (s); `closed` is what was closed before.
+    pub(super) fn take_off<const D: usize>(&mut self, model: &Model<D>, closed: &[Candidate<D>], t: f64) {
         for body in closed.iter().flat_map(|of| of.sides.map(|side| side.body)) {
             if self.takes_off(body) {
-                let drift = self.with_neighbours(model, body, closed);
+                // The part in which it takes off may have added to it.
+                let turn = 2.0 * Drift::with_neighbours(model, body, closed).turn;
                 let at = self.held.partition_point(|flight| flight.body < body);
-                self.held.insert(at, Flight { body, drift });
+                self.held.insert(at, Flight { body, turn, since: t });
             }
         }
-    }
-
-    /// What a body's closed contacts have drifted from their surfaces, or it has taken along into flight; with that of the body that has
-    /// drifted most among those that it stands on, or that stand on it.
-    pub(super) fn with_neighbours<const D: usize>(
-        &self,
-        model: &Model<D>,
-        body: BodyId,
-        closed: &[Candidate<D>],
-    ) -> Drift {
-        let of = |body| Drift::at(model, body, closed).max(self.drift_of(body));
-        let neighbours = contacts_of(model, body, closed).flat_map(|(of, _)| of.sides.map(|side| side.body));
-        let moving = neighbours.filter(|other| *other != body && model.moves(*other));
-        of(body) + moving.map(of).fold(Drift::default(), Drift::max)
     }
 }
 

@@ -1,6 +1,6 @@
 //! An impact: places stand still, velocities jump.
 
-use super::drift::{Drift, contacts_of};
+use super::drift::{Drift, Flight, contacts_of};
 use super::{MASSES, MoreauJeanLocated, may_fly, rate_at};
 use crate::closed_step::{leaves, restitute};
 use crate::laws::is_impact;
@@ -17,6 +17,9 @@ const TOUCHING: f64 = 10.0;
 /// The time of an impact is uncertain by no more than this part of the scheme's step: a larger gap of a closed contact is not drift.
 const HIDDEN: f64 = 0.01;
 
+/// A body that turns by less than this part of what it had drifted to, in a flight, doesn't turn.
+const NO_TURN: f64 = 1e-3;
+
 /// A contact that strikes, and by how much its time is uncertain: by what closed contacts of its bodies have drifted from their surfaces.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strike<const D: usize> {
@@ -24,17 +27,24 @@ pub(super) struct Strike<const D: usize> {
     /// Its normal velocity, m/s: below 0.
     rate: f64,
     drift: Drift,
+    /// The flights of its bodies.
+    flights: [Option<Flight>; 2],
 }
 
 impl<const D: usize> Strike<D> {
-    /// By how much the time (s) is uncertain at which another contact with these sides strikes, in comparison.
-    fn uncertainty(&self, model: &Model<D>, sides: &[Anchor<D>; 2]) -> f64 {
+    /// By how much the time (s) is uncertain at which another contact with these sides and this normal velocity (m/s) strikes, in comparison,
+    /// at time `t`, s.
+    fn uncertainty(&self, model: &Model<D>, sides: &[Anchor<D>; 2], rate: f64, t: f64) -> f64 {
         let lever = |side: &Anchor<D>| {
             let own = self.sides.iter().find(|own| own.body == side.body)?;
             Some((side.point - own.point).norm())
         };
         let lever = sides.iter().filter(|side| model.moves(side.body)).filter_map(lever).fold(0.0, f64::max);
-        (self.drift.shift + self.drift.turn * lever) / -self.rate
+        // What turns in flight is tilted by that, and no more by what had drifted before.
+        let turned = |flight: &Flight| (rate - self.rate).abs() * (t - flight.since);
+        let flights = self.flights.iter().flatten().filter(|flight| turned(flight) <= NO_TURN * flight.turn * lever);
+        let turn = self.drift.turn + flights.map(|flight| flight.turn).fold(0.0, f64::max);
+        (self.drift.shift + turn * lever) / -self.rate
     }
 }
 
@@ -76,7 +86,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         let Self { impact, stays, flights, near, elastic, .. } = self;
         flights.land(model, impact.contacts(), stays, |body| may_fly(model, elastic, body));
         if flights.any_takes_off(impact.contacts()) {
-            flights.take_off(model, near);
+            flights.take_off(model, near, end);
         }
         let energy = self.step.step.work_of_impact(model, from, work, &self.impact, &self.v)?;
         let phase = PhaseEnd::new(PhaseKind::Impact, end, &from.q, &self.v).with_energy(energy).with_outcome(outcome);
@@ -149,7 +159,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 if drift.shift > 0.0 {
                     drift.shift = drift.shift.max(touching);
                 }
-                self.strikes.push(Strike { sides: candidate.sides, rate, drift });
+                let flights = candidate.sides.map(|side| self.flights.of(side.body));
+                self.strikes.push(Strike { sides: candidate.sides, rate, drift, flights });
             }
         }
         Ok(())
@@ -157,7 +168,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
 
     /// What a body may be off its place.
     fn drift_of(&self, model: &Model<D>, body: BodyId) -> Drift {
-        self.flights.with_neighbours(model, body, &self.near)
+        Drift::with_neighbours(model, body, &self.near)
     }
 
     /// Whether a contact that doesn't touch takes part in the impact: what its bodies have drifted may be all of its gap, or it would touch
@@ -173,11 +184,11 @@ impl<const D: usize> MoreauJeanLocated<D> {
         // More is not drift.
         let longest = HIDDEN * from.dt;
         let fastest = self.strikes.iter().map(|strike| -strike.rate).fold(0.0, f64::max);
-        let times = self.strikes.iter().map(|strike| strike.uncertainty(model, &candidate.sides));
+        let rate = rate_at(&mut self.one, model, &from.q, candidate, &from.v)?;
+        let times = self.strikes.iter().map(|strike| strike.uncertainty(model, &candidate.sides, rate, from.t));
         let time = times.filter(|time| *time <= longest).fold(0.0, f64::max);
         let own = self.off_by(model, candidate);
         let own = if own <= longest * fastest { own } else { 0.0 };
-        let rate = rate_at(&mut self.one, model, &from.q, candidate, &from.v)?;
         Ok(candidate.gap <= own + (-rate).max(0.0) * time)
     }
 
