@@ -773,6 +773,24 @@ fn what_hops_by_less_than_can_be_seen_is_at_rest() {
     assert_eq!(early.summary["headline"], "`b` is still bouncing");
 }
 
+/// A couple of 0.14 N m lifts an edge of a plate that 0.137 N m would balance: it turns faster and faster, by 2 mrad after 40 ms, and never flies.
+#[test]
+fn a_plate_that_tips_up_does_not_hop() {
+    for end in ["5 ms", "15 ms", "40 ms"] {
+        let text = format!(
+            "[time]\nend = '{end}'\nstep = '100 us'\n[ground]\n[block.b]\ndensity = '700 kg/m^3'\nwidth = '20 cm'\nheight = '1 cm'\n\
+             depth = '10 cm'\non = 'ground'\nat = '0 cm'\n[contact.c]\nbetween = ['b', 'ground']\nfriction = 0.6\n\
+             [force.f]\non = 'b'\nforce = ['0 N', '0 N']\ncouple = '0.14 N m'\n"
+        );
+        let ran = scene(&format!("tips-{}", end.replace(' ', "-")), &text);
+        let omega = ran.column("b.omega");
+        let [before, last] = [omega[omega.len() / 2], omega[omega.len() - 1]];
+        assert!(before.abs() > 0.0 && last.abs() > before.abs(), "{end}: {before} and {last} rad/s");
+        let headline = ran.summary["headline"].as_str().unwrap();
+        assert!(!headline.contains("at rest"), "{end}: {headline}");
+    }
+}
+
 #[test]
 fn a_tilted_block_that_came_down_and_slides_on_is_told_as_sliding() {
     let text = "[time]\nend = '1.2 s'\nstep = '1 ms'\n[ground]\nincline = '25 deg'\n\

@@ -336,6 +336,15 @@ impl Watched {
         total(self.velocity(layout, number, state)).min(over_base)
     }
 
+    /// By how much it is turned from lying flat on what carries it, where the block is, rad; 0 of one that has no sides to lie on.
+    fn turned(&self, layout: &Layout, number: usize, state: &State) -> f64 {
+        let q = &state.q[layout.blocks[number].range.clone()];
+        let level = self.carrier.turn([q[0], q[1]], layout, &state.q);
+        let level = level - self.outline.as_ref().map_or(0.0, Outline::level);
+        let stance = self.outline.as_ref().and_then(|outline| outline.stance(q[2] - level));
+        stance.map_or(0.0, |stance| q[2] - level - stance.flat)
+    }
+
     /// Velocity and angular velocity relative to what carries it.
     fn velocity(&self, layout: &Layout, number: usize, state: &State) -> [f64; 3] {
         let range = layout.blocks[number].range.clone();

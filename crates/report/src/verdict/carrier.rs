@@ -156,6 +156,19 @@ impl Carrier {
         }
     }
 
+    /// The slope of what carries the block, where the block is, rad.
+    pub(super) fn turn(&self, at: [f64; 2], layout: &Layout, q: &[f64]) -> f64 {
+        match &self.on {
+            On::Beam(beam, position) => {
+                let place = &layout.beams[*beam];
+                let [x, _] = beam_origin(*beam, *position, layout, q);
+                place.deflection(&place.beam.shape_clamped(at[0] - x), &q[place.range.clone()]).slope
+            }
+            On::Block(range) => q[range.start + 2],
+            On::Ground(_) | On::Fixed => self.slope(q),
+        }
+    }
+
     /// Velocity and angular velocity of what carries the block, where the block is.
     pub(super) fn velocity(&self, at: [f64; 2], layout: &Layout, state: &State) -> [f64; 3] {
         match &self.root {

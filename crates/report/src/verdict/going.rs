@@ -88,7 +88,7 @@ pub(super) struct Touched {
 /// down, micrometres above it. In free flight that takes as long as [`FLIGHT`].
 const RISES: f64 = 1e-3;
 
-/// Hops that rise by less than this part of R can't be seen: what does no more is at rest.
+/// Hops that rise by less than this part of R can't be seen: what does no more, with all of its corners as near to what carries it, is at rest.
 const HOPS: f64 = 1e-4;
 
 /// What touches nothing for less than this part of √(R/g) doesn't fly, but chatters: a bounce as long rises by little more than a thousandth of R.
@@ -178,14 +178,18 @@ impl Seen {
         Some(if foot.abs() <= 0.5 * speed { Going::Rolls } else { Going::Slides })
     }
 
-    /// Whether a block that touches something rises by no more than [`HOPS`], now or with all of its speed, and doesn't go along what carries it.
+    /// Whether a block that touches something, and came down from a flight a short time ago, rises by no more than [`HOPS`], now or with all of its
+    /// speed, lies as flat, and doesn't go along what carries it. What tips up rises no more at first, but about a corner.
     fn hops(&self, watched: &Watched, layout: &Layout, number: usize, state: &State) -> bool {
         let [vx, vy, _] = watched.velocity(layout, number, state);
         let (sin, cos) = watched.carrier.slope(&state.q).sin_cos();
         let goes = (cos * vx + sin * vy).abs();
         let rises = watched.speed(layout, number, state).powi(2) / (2.0 * watched.gravity);
+        let has_landed = self.touched.landed.is_some_and(|landed| state.t - landed <= SETTLED * watched.still_time);
+        // Of a width of up to 2R the far corner is as high as that.
+        let is_flat = || watched.turned(layout, number, state).abs() * 2.0 * watched.reach < HOPS * watched.reach;
         // Also false without gravity.
-        goes <= watched.still_speed && self.touched.strayed() + rises < HOPS * watched.reach
+        has_landed && is_flat() && goes <= watched.still_speed && self.touched.strayed() + rises < HOPS * watched.reach
     }
 
     /// Of one that stands, has never come near its critical angle, and isn't on its way along what carries it: it has `slid` by much
