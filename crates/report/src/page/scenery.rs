@@ -47,6 +47,9 @@ pub(crate) struct BeamDrawn {
     pub(crate) inner: Vec<(f64, &'static str)>,
     /// Whether its right end is held along the axis.
     pub(crate) held: bool,
+    /// Whether a support or a foundation carries it.
+    #[serde(skip)]
+    pub(crate) is_carried: bool,
     /// Points along the span, evenly spread.
     pub(crate) points: usize,
     #[serde(skip)]
@@ -62,18 +65,23 @@ pub(crate) struct BeamDrawn {
 }
 
 impl BeamDrawn {
-    /// Whether no support holds it: it lies on blocks or ground, or flies.
+    /// Whether no support and no foundation holds it: it lies on blocks or ground, or flies.
     pub(crate) fn is_free(&self) -> bool {
-        self.supports == [FREE; 2] && self.inner.is_empty()
+        !self.is_carried
     }
 
-    /// A deflection at x (m), from the line through the ends of a beam that no support holds, as its motion as a whole is no bending.
+    /// A deflection (m) at this part of the span, from the line through the ends (whose deflections are `ends`) of a beam that nothing holds, as its
+    /// motion as a whole is no bending.
+    pub(crate) fn from_line(&self, part: f64, w: f64, [left, right]: [f64; 2]) -> f64 {
+        if self.is_free() { w - left - (right - left) * part } else { w }
+    }
+
+    /// The same at x (m), with the deflections of the ends from the coordinates of the beam.
     pub(crate) fn bending(&self, x: f64, w: f64, q: &[f64]) -> f64 {
         let (Some(first), Some(last), true) = (self.places.first(), self.places.last(), self.is_free()) else {
             return w;
         };
-        let (left, right) = (first.deflection(q), last.deflection(q));
-        w - left - (right - left) * (x / self.span)
+        self.from_line(x / self.span, w, [first.deflection(q), last.deflection(q)])
     }
 }
 
@@ -268,6 +276,9 @@ impl Scenery {
             // A multiple of the elements, so that every node is a point, where that is not too many.
             let pieces = (elements * PIECES.div_ceil(elements)).min(MOST_PIECES);
             let at = |x: f64| Probe::new(place, place.beam.shape_clamped(x));
+            let supports = drawn.spec.supports.map(wording::support);
+            let is_carried =
+                supports != [FREE; 2] || !drawn.spec.inner_supports.is_empty() || !drawn.spec.foundations.is_empty();
             BeamDrawn {
                 name: drawn.name.clone(),
                 x: drawn.position[0],
@@ -275,7 +286,7 @@ impl Scenery {
                 span,
                 thickness: drawn.thickness,
                 top: drawn.top,
-                supports: drawn.spec.supports.map(wording::support),
+                supports,
                 inner: drawn
                     .spec
                     .inner_supports
@@ -283,16 +294,16 @@ impl Scenery {
                     .map(|inner| (inner.x, wording::support(inner.support)))
                     .collect(),
                 held: matches!(drawn.spec.axial, Axial::Held | Axial::Elastic { held: [_, true], .. }),
+                is_carried,
                 points: pieces + 1,
                 places: (0..=pieces).map(|k| at(span * (k as f64 / pieces as f64))).collect(),
                 middle: at(0.5 * span),
                 probes: {
                     let recorded = drawn.output.quantities.contains(&scene::BeamQuantity::Deflection);
                     let asked = place.probes.iter().copied().filter(|x| recorded && !is_middle(*x, span));
-                    // The end of a cantilever deflects most; of a beam that no support holds it is no place of its own.
-                    let supports = drawn.spec.supports.map(wording::support);
-                    let held = supports != [FREE; 2] || !drawn.spec.inner_supports.is_empty();
-                    let free = [0.0, span].into_iter().zip(supports).filter(|(_, support)| held && *support == FREE);
+                    // The end of a cantilever deflects most; of a beam that nothing holds it is no place of its own.
+                    let ends = [0.0, span].into_iter().zip(supports);
+                    let free = ends.filter(|(_, support)| is_carried && *support == FREE);
                     let mut places: Vec<f64> = asked.chain(free.map(|(end, _)| end)).collect();
                     places.sort_by(f64::total_cmp);
                     places.dedup();

@@ -98,12 +98,12 @@ pub(super) fn shapes(recorder: &PageRecorder, units: &Units, id: &str) -> Option
     for beam in &scenery.beams {
         let own = first..first + beam.points;
         first = own.end;
-        // A beam that no support holds moves as a whole, too, which is no shape.
+        // A beam that nothing holds moves as a whole, too, which is no shape.
         let bent = |row: &[f64]| -> Vec<f64> {
             let w = &row[own.clone()];
-            let (Some(left), Some(right), true) = (w.first(), w.last(), beam.is_free()) else { return w.to_vec() };
+            let (Some(left), Some(right)) = (w.first(), w.last()) else { return Vec::new() };
             let part = |k: usize| k as f64 / (w.len() - 1).max(1) as f64;
-            w.iter().enumerate().map(|(k, w)| w - left - (right - left) * part(k)).collect()
+            w.iter().enumerate().map(|(k, w)| beam.from_line(part(k), *w, [*left, *right])).collect()
         };
         let sizes: Vec<f64> = rows.iter().map(|(_, row)| largest(&bent(row))).collect();
         let most = largest(&sizes);

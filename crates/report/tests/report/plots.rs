@@ -8,7 +8,7 @@ use teeter_report::{columns, figures};
 use teeter_scenario::simulation::Simulation;
 
 /// A table's columns by name.
-fn table(path: &Path) -> Vec<(String, Vec<f64>)> {
+pub(crate) fn table(path: &Path) -> Vec<(String, Vec<f64>)> {
     columns_of(&fs::read_to_string(path).unwrap())
 }
 
