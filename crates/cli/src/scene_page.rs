@@ -68,7 +68,7 @@ A run gives warnings about what it has measured at its end, on the terminal, on 
 |---|---|
 | `under-resolved`, `under-resolved-swings`, `under-resolved-flight` | steps too long for the impacts of a block, for the vibration of a beam, for a flight with θ other than ½: motions are likely off by more than 10 % ([resolution.md](resolution.md)) |
 | `unconverged` | steps whose contact problem was not solved to tolerance |
-| `unlocated` | steps of `moreau-jean-located` with more impacts, or of `event-driven` with more events, than were located ([schemes.md](schemes.md)) |
+| `unlocated` | steps of `moreau-jean-located` in which not all impacts and ends of slides were located, or of `event-driven` not all events ([schemes.md](schemes.md)) |
 | `energy-made` | contacts, or the scheme, generated 1 % or more of the energy scale, or of the energy lost ([schemes.md](schemes.md)) |
 | `energy-taken` | the scheme itself dissipated 1 % or more of the energy scale ([schemes.md](schemes.md)) |
 | `horizon` | up to when the motion is predictable, if `--horizon` finds that this is before the end ([accuracy.md](accuracy.md)) |

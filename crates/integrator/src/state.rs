@@ -88,7 +88,7 @@ pub struct Tally {
     pub contact_steps: u64,
     /// Steps whose contact problem was not solved to tolerance.
     pub unconverged_steps: u64,
-    /// Steps in which more contacts struck than the scheme locates, counted by the scheme.
+    /// Steps in which the scheme didn't locate all impacts and ends of slides, or events, counted by the scheme.
     pub unlocated_steps: u64,
 }
 

@@ -20,7 +20,7 @@ pub(crate) fn warning(scene: &Scene, state: &State) -> Option<Warning> {
         )
     } else {
         format!(
-            "{steps} had more impacts than {} locates, so that the rest of them was taken as a step of fixed length",
+            "in {steps} not all impacts and ends of slides were located by {}, so that the rest of such a step was taken with its fixed length",
             scheme.word()
         )
     };

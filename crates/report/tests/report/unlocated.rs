@@ -1,4 +1,4 @@
-//! Steps with more impacts than are located are told wherever a run is told of.
+//! Steps in which not all impacts and ends of slides are located are told wherever a run is told of.
 
 use crate::page::{run, shown};
 use teeter_report::UNLOCATED;
@@ -13,13 +13,13 @@ pub(crate) fn lintel(scheme: &str) -> String {
 }
 
 #[test]
-fn steps_with_more_impacts_than_are_located_are_a_warning_in_the_summary_and_on_the_page() {
+fn steps_in_which_not_all_is_located_are_a_warning_in_the_summary_and_on_the_page() {
     let located = run("unlocated", &lintel("moreau-jean-located"));
     let steps = located.summary.unlocated_steps;
     assert!(steps > 0, "the scene doesn't test it any more");
     let warning = located.summary.warnings.iter().find(|warning| warning.code == UNLOCATED).unwrap();
     assert_eq!(warning.count, steps);
-    assert!(warning.text.contains("more impacts than moreau-jean-located locates"), "{}", warning.text);
+    assert!(warning.text.contains("not all impacts and ends of slides were located"), "{}", warning.text);
     assert!(!warning.text.contains("  "), "{}", warning.text);
     assert!(located.html.contains("<li data-warning=\"unlocated\">"));
     assert_eq!(shown(&located.html, "unlocated_steps"), steps.to_string());
