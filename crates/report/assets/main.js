@@ -422,12 +422,12 @@
     for (const { t, y } of motions) {
       const values = y.map((x) => x ?? NaN);
       const [low, high] = values.reduce(([a, b], x) => (Number.isFinite(x) ? [Math.min(a, x), Math.max(b, x)] : [a, b]), [Infinity, -Infinity]);
-      const [begin, end] = [values.find(Number.isFinite), values[values.length - 1]];
-      if (!(high > low) || !Number.isFinite(end)) continue;
+      const [begin, final] = [values.find(Number.isFinite), values[values.length - 1]];
+      if (!(high > low) || !Number.isFinite(final)) continue;
       const moved = (x, from) => Math.abs(x - from) > 0.01 * (high - low);
       const leaves = values.findIndex((x) => moved(x, begin));
       let comes = values.length - 1;
-      while (comes > 0 && !moved(values[comes], end)) comes -= 1;
+      while (comes > 0 && !moved(values[comes], final)) comes -= 1;
       first = Math.min(first, t[Math.max(0, leaves - 1)] ?? Infinity);
       last = Math.max(last, t[Math.min(t.length - 1, comes + 1)]);
     }
@@ -443,7 +443,7 @@
     plots.zoom(from, to);
     const say = (t) => `${Number((t * timeUnit[1]).toPrecision(3))} ${timeUnit[0]}`;
     const when = first - start < 1e-3 * (end - start) ? `after ${say(last)}` : `before ${say(first)} or after ${say(last)}`;
-    const note = htmlElement("p", "note", `Nothing moves ${when}: the plots open on what does. `);
+    const note = htmlElement("p", "note", `Hardly anything moves ${when}: the plots open on what does. `);
     note.id = "opened-on";
     const whole = htmlElement("button", "link", "Show all times", note);
     whole.type = "button";
