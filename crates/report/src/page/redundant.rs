@@ -25,7 +25,7 @@ const LOOKS: usize = 50;
 /// Contacts are told if they are so in this part of these times: not for a touch in passing.
 const LEAST: f64 = 0.1;
 
-/// How many of these times are a rest.
+/// So many looks in a row are a rest.
 const REST: usize = 2;
 
 /// What equilibrium leaves open of the forces of a contact.
@@ -86,14 +86,22 @@ pub(super) fn redundant(recorder: &PageRecorder, curves: &Curves, forces: &[Opti
         .collect();
     let at_end = |contact: usize| looks.last().is_some_and(|look| look[contact]);
     // A short rest, as before a column is shaken, is enough for a square wave between its feet.
-    let rests = |count: usize| count >= REST;
     let often = |count: usize| count as f64 >= LEAST * looks.len() as f64 && count > 0;
     let of = |contact: usize| Redundant {
         forces: often(looks.iter().filter(|look| look[contact]).count()),
         at_end: at_end(contact),
-        shares: rests(buckets.iter().filter(|bucket| shares(&contacts[contact], **bucket)).count()),
+        shares: longest(buckets.iter().map(|bucket| shares(&contacts[contact], *bucket))) >= REST,
     };
     (0..contacts.len()).map(of).collect()
+}
+
+/// How many looks in a row are so at most.
+fn longest(looks: impl Iterator<Item = bool>) -> usize {
+    let count = |row: &mut usize, is_so: bool| {
+        *row = if is_so { *row + 1 } else { 0 };
+        Some(*row)
+    };
+    looks.scan(0, count).max().unwrap_or(0)
 }
 
 /// Of contacts between two blocks that press: whether they lie flat on each other, in the picture at or before `t` (s).
@@ -150,3 +158,16 @@ fn at(recorder: &PageRecorder, pressing: &[usize], flat: &[bool], stick: &[bool]
 
 /// What is said of them.
 pub(super) const NOTE: &str = "one of many equilibria of rigid bodies";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn looks_apart_are_no_rest() {
+        let longest = |looks: [u8; 6]| longest(looks.into_iter().map(|look| look == 1));
+        assert!(longest([1, 0, 1, 0, 0, 1]) < REST);
+        assert!(longest([0, 1, 1, 0, 0, 1]) >= REST);
+        assert_eq!(longest([0; 6]), 0);
+    }
+}
