@@ -330,14 +330,14 @@ fn format_summary(summary: &Summary, folder: &Path, horizon: bool, report: bool)
             "  {}{}{}, {}, deepest penetration {}, {identity}\n",
             count(summary.impact_count, "impact"),
             // A block that lands flat has one at each of its corners.
-            if summary.impact_count > 0 { " (each corner or point counts)" } else { "" },
+            summary.strikers(),
             if summary.reclosure_count > 0 {
                 format!(" and {}", count(summary.reclosure_count, "re-closure"))
             } else {
                 String::new()
             },
             count(summary.crossings.len() as u64, "zero crossing"),
-            with_digits(summary.max_penetration, "m", 2),
+            with_digits(summary.told_penetration(), "m", 2),
         ));
     }
     if summary.contact.unconverged_steps > 0 {

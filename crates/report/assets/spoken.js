@@ -31,7 +31,7 @@ const spoken = (() => {
     const share = (letter) => [...state].filter((one) => one === letter).length / Math.max(1, state.length);
     const [stick, slip, briefly] = [share("k"), share("l"), share("b")];
     const percent = (part) => `${Math.round(100 * part)} %`;
-    return `${short}: sticks ${percent(stick)}, slips ${percent(slip)}, ${briefly ? `presses now and then ${percent(briefly)}, ` : ""}is open ${percent(1 - stick - slip - briefly)} of the time`;
+    return `${short}: sticks ${percent(stick)}, slips ${percent(slip)}, ${briefly ? `presses briefly ${percent(briefly)}, ` : ""}is open ${percent(1 - stick - slip - briefly)} of the time`;
   }
 
   function ofPortrait({ label, x, y }, { xName, xUnit, title, unit }) {

@@ -28,6 +28,7 @@ mod summary;
 mod swings;
 mod table;
 mod taken_energy;
+mod told;
 mod unlocated;
 mod verdict;
 mod warnings;

@@ -1,5 +1,6 @@
 //! `summary.json`: the numbers of a run.
 
+use crate::told::Told;
 use crate::verdict::{BodyVerdict, StopReason, headline};
 use crate::{BeamRecord, ImpactRow, LargestDeflection, LargestStress, ReactionRange, Record, Warning};
 use crate::{made_energy, taken_energy, unlocated};
@@ -92,7 +93,7 @@ pub struct Summary {
     pub impact_count: u64,
     /// How often a contact was lost for a moment and found again, without having been truly open.
     pub reclosure_count: u64,
-    /// Steps in which more contacts struck than the scheme locates: the rest of such a step is taken as by a fixed step.
+    /// Steps in which the scheme didn't locate all impacts and ends of slides, or events: the rest of such a step is taken as by a fixed step.
     pub unlocated_steps: u64,
     /// Zero crossings of the angles.
     pub crossings: Vec<CrossingRow>,
@@ -131,6 +132,9 @@ pub struct Summary {
     pub model: ModelSummary,
     /// Warnings, each kind once.
     pub warnings: Vec<Warning>,
+    /// How some of it is told.
+    #[serde(skip)]
+    pub(crate) told: Told,
 }
 
 /// How the contact problems were solved.
@@ -151,6 +155,7 @@ pub struct ContactSummary {
 }
 
 /// The energy account.
+#[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EnergySummary {
     /// Largest residual of the identity in a step, relative to `scale`.
@@ -160,11 +165,11 @@ pub struct EnergySummary {
     /// The same at the end, J.
     #[serde(rename = "final")]
     pub last: f64,
-    /// What contacts, friction, dampers and the scheme took, J.
+    /// What was lost to dissipation and to the scheme, J.
     pub lost: f64,
-    /// Of that, what contacts, friction and dampers took: the loss of the mechanics, J.
+    /// Of that, what contacts, friction and dampers dissipated, J.
     pub dissipated: f64,
-    /// The rest, what the scheme took by its own rule, J: it has no cause in the mechanics. Negative if it made energy.
+    /// The rest, what the time scheme itself dissipated, J; no physical cause. Negative if it made energy.
     pub lost_by_scheme: f64,
     /// The scene's energy scale: max |T| + |V_elastic| + |ΔV_gravity|, at least m g R; J.
     pub scale: f64,
@@ -483,6 +488,7 @@ impl Summary {
                 .chain(taken_energy::warning(scene, &state.ledger))
                 .chain(unlocated::warning(scene, state))
                 .collect(),
+            told: Told::of(scene),
         }
     }
 

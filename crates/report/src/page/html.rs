@@ -8,7 +8,6 @@ mod tiles;
 use super::panels::Panels;
 use super::recorder::PageRecorder;
 use super::rocking::half_cycles;
-use super::scenery::BlockDrawn;
 use super::{accelerograms, content, data, thrust};
 use crate::{Summary, with_digits};
 use std::collections::BTreeMap;
@@ -64,7 +63,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("verdict", verdict(summary)),
         ("subtitle", subtitle(summary)),
         ("warnings", warnings(summary)),
-        ("tiles", tiles::tiles(&values, summary, &panels.units, strikers(recorder))),
+        ("tiles", tiles::tiles(&values, summary, &panels.units)),
         ("residual", scientific(summary.energy.largest_residual)),
         ("notdrawn", not_drawn(&panels)),
         ("shapes", beams::shapes(recorder, &panels.units)),
@@ -77,17 +76,6 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("settings", escaped(scene_toml)),
     ]);
     filled(TEMPLATE, &parts)
-}
-
-/// How impacts are counted, in words after "Impacts": each corner that strikes is one, so that a block that lands flat has two. Other words where there
-/// are round blocks; none where all contacts are springs, on which nothing strikes.
-fn strikers(recorder: &PageRecorder) -> &'static str {
-    let scenery = &recorder.scenery;
-    let is_sharp = |block: &BlockDrawn| block.parts.iter().all(|(corners, radius)| *corners > 2 && *radius == 0.0);
-    if scenery.contacts.iter().any(|contact| contact.has_duration) {
-        return "";
-    }
-    if scenery.blocks.iter().all(is_sharp) { " (each corner counts)" } else { " (each point counts)" }
 }
 
 /// The template with every `{{name}}` replaced; what is put in is not looked at again.
@@ -121,7 +109,7 @@ fn verdict(summary: &Summary) -> String {
     }
     // The sentence stands above what says how little it can be relied on.
     if summary.warnings.iter().any(|warning| warning.code.starts_with("under-resolved")) {
-        html.push_str(" <span class=\"reserve\">– as far as such long steps can tell, see the warnings</span>");
+        html.push_str("<span class=\"reserve\">; see the warnings</span>");
     }
     html
 }

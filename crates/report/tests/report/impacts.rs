@@ -104,3 +104,16 @@ fn impacts_are_said_to_be_counted_by_corners() {
     assert_eq!(drop.summary.impact_count % 2, 0, "both corners of a flat base strike at once");
     assert!(drop.html.contains("<dt>Impacts (each corner counts)</dt>"));
 }
+
+/// Nothing strikes where nothing moves, and what stands is in its ground by no more than rounding.
+#[test]
+fn a_cube_that_stands_still_has_no_way_of_counting_impacts_and_no_penetration() {
+    let run = crate::page::run("told-incline", &scenario("incline"));
+    assert_eq!(run.summary.impact_count, 0);
+    assert!(run.summary.max_penetration < 1e-15, "{}", run.summary.max_penetration);
+    assert!(run.html.contains("<dt>Impacts</dt>"));
+    let tile = &run.html[run.html.find("<dt>Deepest penetration").unwrap()..];
+    let tile = &tile[..tile.find("</dd>").unwrap()];
+    assert!(tile.ends_with(">0\u{a0}m"), "{tile}");
+    assert_eq!((run.summary.strikers(), run.summary.told_penetration()), ("", 0.0));
+}

@@ -49,7 +49,7 @@ pub(super) fn rocking(cycles: &[HalfCycle], recorder: &PageRecorder, dt: f64) ->
     head.push_str(if ideal { "<th scope=\"col\">Housner</th>" } else { "" });
     let _ = write!(
         head,
-        "<th scope=\"col\">Next peak<br><small>{angle_unit}</small></th><th scope=\"col\">Next peak / last</th></tr></thead>\n<tbody>\n"
+        "<th scope=\"col\">Next peak<br><small>{angle_unit}</small></th><th scope=\"col\">Next peak / previous</th></tr></thead>\n<tbody>\n"
     );
     let fixed = |x: Option<f64>, digits: usize| {
         // No negative zero.

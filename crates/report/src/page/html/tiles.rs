@@ -126,8 +126,8 @@ fn lost(lost: f64, summary: &Summary, units: &Units) -> String {
     format!("{} {prefix}J", shortest(factor * lost, 3).replace('-', "\u{2212}"))
 }
 
-/// In the units of the plots. `strikers`: what strikes, in words after "Impacts".
-pub(super) fn tiles(values: &Numbers, summary: &Summary, units: &Units, strikers: &str) -> String {
+/// In the units of the plots.
+pub(super) fn tiles(values: &Numbers, summary: &Summary, units: &Units) -> String {
     let mut html = String::new();
     let seconds = |t: Option<f64>| t.map(|t| as_told(t, "s"));
     for (path, label, shown) in sliding(summary) {
@@ -139,7 +139,7 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, units: &Units, strikers
             in_one_line(&shown)
         );
     }
-    let impacts = format!("Impacts{strikers}");
+    let impacts = format!("Impacts{}", summary.strikers());
     // What overturned or slides has gone past its critical angle, or not come near it.
     let rocks = summary.overturned_at.is_none();
     // Without contacts their numbers would all be 0.
@@ -168,7 +168,7 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, units: &Units, strikers
                 (RECLOSURES, Some(summary.reclosure_count.to_string()).filter(|_| !stood_still(summary)))
             }
             // As the terminal has it.
-            "max_penetration" => ("Deepest penetration", Some(with_prefix_of(summary.max_penetration, 2, "m"))),
+            "max_penetration" => ("Deepest penetration", Some(with_prefix_of(summary.told_penetration(), 2, "m"))),
             "energy.largest_residual" => ("Energy residual", Some(scientific(summary.energy.largest_residual))),
             "contact.unconverged_steps" => ("Steps not solved", Some(summary.contact.unconverged_steps.to_string())),
             "contact.max_residual" => ("Contact residual", Some(scientific(summary.contact.max_residual))),
@@ -207,13 +207,13 @@ const NAMES: [(&str, &str); 20] = [
     ("contact.max_contacts", "Most contacts in a step"),
     ("energy.initial", "Energy at the start"),
     ("energy.final", "Energy at the end"),
-    ("energy.lost", "Energy lost, in mechanics and by the scheme"),
+    ("energy.lost", "Energy lost, to dissipation and to the scheme"),
     ("energy.scale", "Energy to which residuals are relative"),
     ("energy.positive_contact_work.steps", "Steps in which contacts gave energy"),
     ("energy.positive_contact_work.largest", "Largest gain of energy in a step"),
     ("energy.positive_contact_work.sum", "All gains of energy"),
     ("energy.largest_tangential_work", "Largest gain of energy by friction"),
-    ("unlocated_steps", "Steps with more impacts than are located"),
+    ("unlocated_steps", "Steps in which not all impacts and ends of slides were located"),
     ("crossing_count", "Changes of sign of the angles"),
     ("stopped_by", "Stopped as"),
 ];

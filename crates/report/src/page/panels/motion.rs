@@ -341,8 +341,9 @@ impl Panels {
                 y_unit: format!("{}/s", units[1]),
                 least: if c == PHI { [4e-5 * factors[0], 2e-3] } else { factors.map(|factor| 1e-4 * reach * factor) },
                 guides,
-                note: (orbits.iter().any(|(_, points)| strong(points) < points.len()))
-                    .then(|| format!("strong: the first {} turns of the velocity; pale: all later ones", STRONG)),
+                note: (orbits.iter().any(|(_, points)| strong(points) < points.len())).then(|| {
+                    format!("strong: the first {} changes of sign of the velocity; pale: all later ones", STRONG)
+                }),
                 lines: orbits.into_iter().map(line).collect(),
             };
             self.portraits.push(portrait);

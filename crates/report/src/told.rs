@@ -1,0 +1,48 @@
+//! Words and numbers that the terminal and the page tell alike.
+
+use crate::Summary;
+use teeter_scenario::scene::{BlockScene, Scene};
+
+/// A penetration below this part of the largest block is rounding of positions.
+const ROUNDING: f64 = 1e-14;
+
+/// What of a scene decides how its numbers are told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Told {
+    /// What an impact is of.
+    strikers: &'static str,
+    /// Lengths up to this are told as 0, m.
+    rounding: f64,
+}
+
+impl Told {
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let is_sharp = |block: &BlockScene| match &block.parts {
+            None => block.corner_count() > 2,
+            Some(parts) => parts.iter().all(|part| part.shape.core().len() > 2 && part.shape.radius() == 0.0),
+        };
+        let strikers = match () {
+            // On springs nothing strikes.
+            () if scene.contacts.iter().any(|contact| contact.law.impact.has_duration()) => "",
+            () if scene.blocks.iter().all(is_sharp) => " (each corner counts)",
+            () => " (each point counts)",
+        };
+        let largest = scene.blocks.iter().map(BlockScene::radius).filter(|reach| reach.is_finite()).fold(0.0, f64::max);
+        Self { strikers, rounding: ROUNDING * largest }
+    }
+}
+
+impl Summary {
+    /// How impacts are counted, in words after their number: each corner that strikes is one, so that a block that lands flat has two. Other words
+    /// where there are round blocks; none where there are no impacts, or contacts with springs.
+    #[must_use]
+    pub fn strikers(&self) -> &'static str {
+        if self.impact_count > 0 { self.told.strikers } else { "" }
+    }
+
+    /// The deepest penetration as it is told, m: 0 where it is no more than rounding.
+    #[must_use]
+    pub fn told_penetration(&self) -> f64 {
+        if self.max_penetration > self.told.rounding { self.max_penetration } else { 0.0 }
+    }
+}
