@@ -72,7 +72,7 @@ impl BeamDrawn {
 
     /// A deflection (m) at this part of the span, from the line through the ends (whose deflections are `ends`) of a beam that nothing holds, as its
     /// motion as a whole is no bending.
-    pub(crate) fn from_line(&self, part: f64, w: f64, [left, right]: [f64; 2]) -> f64 {
+    pub(crate) fn off_line(&self, part: f64, w: f64, [left, right]: [f64; 2]) -> f64 {
         if self.is_free() { w - left - (right - left) * part } else { w }
     }
 
@@ -81,7 +81,7 @@ impl BeamDrawn {
         let (Some(first), Some(last), true) = (self.places.first(), self.places.last(), self.is_free()) else {
             return w;
         };
-        self.from_line(x / self.span, w, [first.deflection(q), last.deflection(q)])
+        self.off_line(x / self.span, w, [first.deflection(q), last.deflection(q)])
     }
 }
 

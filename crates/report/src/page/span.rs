@@ -103,7 +103,7 @@ pub(super) fn shapes(recorder: &PageRecorder, units: &Units, id: &str) -> Option
             let w = &row[own.clone()];
             let (Some(left), Some(right)) = (w.first(), w.last()) else { return Vec::new() };
             let part = |k: usize| k as f64 / (w.len() - 1).max(1) as f64;
-            w.iter().enumerate().map(|(k, w)| beam.from_line(part(k), *w, [*left, *right])).collect()
+            w.iter().enumerate().map(|(k, w)| beam.off_line(part(k), *w, [*left, *right])).collect()
         };
         let sizes: Vec<f64> = rows.iter().map(|(_, row)| largest(&bent(row))).collect();
         let most = largest(&sizes);
