@@ -125,6 +125,17 @@ fn cases_that_warn_are_counted_by_the_kinds_of_warnings() {
     assert!(told.contains("warning: 2 of 3 cases warn: ") && told.contains("scene (2)"), "{told}");
 }
 
+/// Those that only the end of a run shows are among them, too: the column has what `summary.json` has.
+#[test]
+fn the_warnings_of_a_case_are_those_of_its_summary() {
+    let lintel = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/lintel.toml");
+    let grid = "[grid]\ntime.scheme = [\"moreau-jean-located\"]\ntime.end = [\"0.2 s\"]\n";
+    let folder = study("end-warnings", &format!("scene = {lintel:?}\n{grid}"));
+    done(&folder, &["sweep", "sweep.toml", "--out", "all"]);
+    let row = &table(&folder.join("all/results.csv"))[1];
+    assert!(row[row.len() - 2].split(' ').any(|code| code == "unlocated"), "{row:?}");
+}
+
 #[test]
 fn notes_are_of_all_cases_also_of_those_that_ran_before() {
     let sweep = "scene = \"rocking.toml\"\n[grid]\ncontact.feet.friction = [0.3, -1, 0.5]\n[outputs]\nnothing = \"peaks.90000.phi\"\n";

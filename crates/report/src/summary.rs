@@ -479,17 +479,19 @@ impl Summary {
             horizon: record.horizon,
             ended,
             model: ModelSummary::new(scene, layout),
-            warnings: record
-                .warnings
-                .warnings()
-                .iter()
-                .cloned()
-                .chain(made_energy::warning(scene, state))
-                .chain(taken_energy::warning(scene, &state.ledger))
-                .chain(unlocated::warning(scene, state))
-                .collect(),
+            warnings: Self::warnings(scene, state, record).collect(),
             told: Told::of(scene),
         }
+    }
+
+    /// The warnings of a run, as its summary has them: those that were given along the way, and those that only its end shows.
+    pub fn warnings<'a>(scene: &Scene, state: &State, record: &'a Record) -> impl Iterator<Item = Warning> + use<'a> {
+        let at_end = [
+            made_energy::warning(scene, state),
+            taken_energy::warning(scene, &state.ledger),
+            unlocated::warning(scene, state),
+        ];
+        record.warnings.warnings().iter().cloned().chain(at_end.into_iter().flatten())
     }
 
     /// The keys at the top of `summary.json`; those of what a run doesn't have are left out there.

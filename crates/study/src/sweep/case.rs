@@ -216,7 +216,8 @@ fn run_once(
         Summary::of_keys(&keys, &scene, &layout, state, &record, word, 0.0)
     });
     let outputs = sweep.outputs().iter().map(|output| output.cell(summary.as_ref(), &columns, &scene)).collect();
-    let mut warnings: Vec<String> = record.warnings.warnings().iter().map(|warning| warning.code.to_string()).collect();
+    let mut warnings: Vec<String> =
+        Summary::warnings(&scene, state, &record).map(|warning| warning.code.to_string()).collect();
     // Rows of all steps are as close as they can be.
     let is_thinned = (columns.rows() as u64) < state.step;
     if is_thinned && sweep.outputs().iter().any(|output| output.is_coarse(&columns)) {
