@@ -41,7 +41,7 @@ impl Default for MoreauJeanLocatedSettings {
 /// What it can't step.
 const FOLLOWERS: &str = "matrices that follow their coordinates: what energy they keep depends on the size of the step";
 
-/// Jumps of loads at which a step is divided, as more make a load that varies within it.
+/// A step is divided at so many jumps of loads at most.
 const MOST_JUMPS: usize = 4;
 
 /// Steps for which a contact with something elastic pressed lately.
@@ -358,8 +358,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
                     *by_forces = (free - v0) * whole;
                 }
             }
-            let worth = |end: &f64| (end - from.t).min(span.end - end) > STEP_ROUNDING * span.h;
-            let jump = if jumps < MOST_JUMPS { self.find_jump(model, &rest, from.dt).filter(worth) } else { None };
+            // Not one that rounding leaves at an end of what is left.
+            let is_within = |end: &f64| (end - from.t).min(span.end - end) > STEP_ROUNDING * span.h;
+            let jump = if jumps < MOST_JUMPS { self.find_jump(model, &rest, from.dt).filter(is_within) } else { None };
             let rest = jump.map_or(rest, |end| StepSpan { end, h: end - from.t, ..rest });
             if jump.is_some() {
                 self.step.begin(model, from, &rest, work)?;

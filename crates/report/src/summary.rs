@@ -364,21 +364,8 @@ impl Summary {
         Self::of_keys(&["records", "headline"], scene, layout, state, record, ended, wall_seconds)
     }
 
-    /// As [`Self::new`] without the measures of its accelerograms, which take longer to find than all else of a short run.
-    #[must_use]
-    pub fn without_records(
-        scene: &Scene,
-        layout: &Layout,
-        state: &State,
-        record: &Record,
-        ended: EndedWord,
-        wall_seconds: f64,
-    ) -> Self {
-        Self::of_keys(&["headline"], scene, layout, state, record, ended, wall_seconds)
-    }
-
-    /// As [`Self::new`] for the values under these [`KEYS`](Self::KEYS): what takes long, the measures of accelerograms and the headline, is
-    /// left empty unless it is among them.
+    /// As [`Self::new`], but what takes long, the measures of accelerograms (`records`) and the `headline`, is left empty unless it is among
+    /// these [`KEYS`](Self::KEYS).
     #[must_use]
     pub fn of_keys(
         keys: &[&str],

@@ -9,7 +9,7 @@ use crate::{
     Workspace,
 };
 use std::ops::Add;
-use teeter_detect::{Anchor, BodyId, Candidate};
+use teeter_detect::{Anchor, Candidate};
 
 /// Contacts with a gap of up to so many tolerances touch.
 const TOUCHING: f64 = 10.0;
@@ -17,7 +17,7 @@ const TOUCHING: f64 = 10.0;
 /// The time of an impact is uncertain by no more than this part of the scheme's step: a larger gap of a closed contact is not drift.
 const HIDDEN: f64 = 0.01;
 
-/// A body that turns by less than this part of what it had drifted to, in a flight, doesn't turn.
+/// A body that turns in a flight by less than this part of the tilt that it had drifted to counts as not turning.
 const NO_TURN: f64 = 1e-3;
 
 /// A contact that strikes, and by how much its time is uncertain: by what closed contacts of its bodies have drifted from their surfaces.
@@ -155,7 +155,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
             let rate = rate_at(&mut self.one, model, &from.q, candidate, &from.v)?;
             if leaves(-rate, || self.one.speed(0, &from.v)) {
                 let moving = candidate.sides.iter().filter(|side| model.moves(side.body));
-                let mut drift = moving.map(|side| self.drift_of(model, side.body)).fold(Drift::default(), Drift::add);
+                let mut drift = moving
+                    .map(|side| Drift::with_neighbours(model, side.body, &self.near))
+                    .fold(Drift::default(), Drift::add);
                 if drift.shift > 0.0 {
                     drift.shift = drift.shift.max(touching);
                 }
@@ -164,11 +166,6 @@ impl<const D: usize> MoreauJeanLocated<D> {
             }
         }
         Ok(())
-    }
-
-    /// What a body may be off its place.
-    fn drift_of(&self, model: &Model<D>, body: BodyId) -> Drift {
-        Drift::with_neighbours(model, body, &self.near)
     }
 
     /// Whether a contact that doesn't touch takes part in the impact: what its bodies have drifted may be all of its gap, or it would touch
@@ -196,7 +193,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
     fn off_by(&self, model: &Model<D>, contact: &Candidate<D>) -> f64 {
         let of_side = |side: &Anchor<D>| {
             let levers = contacts_of(model, side.body, &self.near).map(|(_, of)| (side.point - of.point).norm());
-            let drift = self.drift_of(model, side.body);
+            let drift = Drift::with_neighbours(model, side.body, &self.near);
             drift.shift + drift.turn * levers.fold(0.0, f64::max)
         };
         contact.sides.iter().filter(|side| model.moves(side.body)).map(of_side).sum()

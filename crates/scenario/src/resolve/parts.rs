@@ -41,9 +41,9 @@ pub(super) struct Part<T> {
 }
 
 impl Resolver<'_, '_> {
-    /// A part of the scene that is made of the document and of parts `of` which these settings were
-    /// read, with the settings read for it in all: of the last scene if it would be the same, or
-    /// made now.
+    /// A part of the scene, with all the settings that it depends on. It is made of the document and
+    /// of other parts, for which the settings `of` were read. The last scene's is taken if these all
+    /// have the same values; otherwise it is made.
     pub(super) fn scene_part<T: Clone>(
         &mut self,
         place: fn(&mut SceneParts) -> &mut Option<Part<T>>,

@@ -106,7 +106,7 @@ fn align_without(
     off: &[(usize, usize)],
 ) -> Aligned {
     let start = trace.at(0.0).map_or(0.0, |motion| motion.of(Channel::Phi));
-    // Beside how well it fits from there.
+    // With the mismatch from each side, of which the smaller one is right.
     let seen_from = |sign: Sign| {
         let mut motion = measured.motion(sign);
         set_zero(&mut motion, sign.factor() * offset, start);
@@ -145,7 +145,9 @@ impl SideFit {
         let search_of = |channel: Channel| {
             let mut search = Search::of(channel, motion, trace, end);
             // How much of the motions a given shift leaves to compare is not for the search to say.
-            search.window.fewest = if shift.is_some() { FEWEST_ROWS } else { search.window.fewest };
+            if shift.is_some() {
+                search.window.fewest = FEWEST_ROWS;
+            }
             search
         };
         let by = motion.leading();

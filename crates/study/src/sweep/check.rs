@@ -105,7 +105,7 @@ impl Sweep {
         let columns = header.trim_end().split(',').map(str::to_owned).collect();
         let record = recorder.into_record();
         let (layout, state) = (&simulation.layout, &simulation.state);
-        let summary = Summary::without_records(&scene, layout, state, &record, EndedWord::Complete, 0.0);
+        let summary = Summary::of_keys(&["headline"], &scene, layout, state, &record, EndedWord::Complete, 0.0);
         Some(Offered { end: scene.time.end, columns, summary })
     }
 }
