@@ -45,7 +45,9 @@ const STUDIES: [Study; 7] = [
 
 fn main() -> Result<()> {
     let rounds = if std::env::args().any(|arg| arg == "--test") { 1 } else { ROUNDS };
-    println!("| study | steps | case, µs | steps, µs | overhead, µs | least case | least steps | overhead of the least |");
+    println!(
+        "| study | steps | case, µs | steps, µs | overhead, µs | least case | least steps | overhead of the least |"
+    );
     println!("|---|---:|---:|---:|---:|---:|---:|---:|");
     // A name, or part of one, chooses studies.
     let parts: Vec<String> = std::env::args().skip(1).filter(|arg| !arg.starts_with('-')).collect();
@@ -79,7 +81,9 @@ fn row((name, scene, end, [key, from, to], outputs): Study, rounds: usize) -> Re
     }
     let [[least_case, case], [least_bare, bare], [_, overhead]] = [cases, bare, overhead].map(least_and_median);
     let least = least_case - least_bare;
-    Ok(format!("| {name} | {steps} | {case:.1} | {bare:.1} | {overhead:.1} | {least_case:.1} | {least_bare:.1} | {least:.1} |"))
+    Ok(format!(
+        "| {name} | {steps} | {case:.1} | {bare:.1} | {overhead:.1} | {least_case:.1} | {least_bare:.1} | {least:.1} |"
+    ))
 }
 
 /// Processor time of a case with its row, µs.

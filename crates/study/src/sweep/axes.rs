@@ -61,8 +61,14 @@ fn leaves<'a, 't>(table: &'a DeTable<'t>, words: &[&str], above: &str) -> Vec<(S
     all
 }
 
+/// Whether a table gives a key's values, and isn't a part of the key's path. Scenes have keys `from`, `to` and `count` of
+/// their own: a list there has the values of that key, since a range has one of each.
 fn is_range(table: &DeTable<'_>, words: &[&str]) -> bool {
-    table.is_empty() || entries(table).iter().any(|(name, node)| words.contains(name) && node.table().is_none())
+    let gives = |(name, node): &(&str, Node<'_, '_>)| {
+        let list_of_its_own = node.array().is_some() && ["from", "to", "count"].contains(name);
+        words.contains(name) && node.table().is_none() && !list_of_its_own
+    };
+    table.is_empty() || entries(table).iter().any(gives)
 }
 
 pub(super) fn grid(reader: &mut Reader<'_>, table: &DeTable<'_>, name: &str, files: &ListFiles<'_>) -> Vec<Axis> {
@@ -339,4 +345,26 @@ fn random_key(reader: &mut Reader<'_>, key: String, node: &Node<'_, '_>) -> Opti
         return None;
     }
     Some(RandomKey { key, distribution, unit: first })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::sweep::Sweep;
+
+    #[test]
+    fn from_and_to_with_lists_are_keys_of_the_scene() {
+        let keys = |grid: &str| -> Result<(Vec<String>, u64), String> {
+            let text = format!("scene = 's.toml'\n[grid]\n{grid}\n[outputs]\nover = 'overturned'\n");
+            let sweep = Sweep::read(&text, "f", &|_, _| Err("none".to_owned())).map_err(|found| found.to_string())?;
+            Ok((sweep.keys().into_iter().map(str::to_owned).collect(), sweep.cases()))
+        };
+        let [chirp, block] = ["signal.chirp", "block"].map(|table| move |key: &str| format!("{table}.{key}"));
+        assert_eq!(keys("signal.chirp.from = ['1 Hz', '2 Hz']"), Ok((vec![chirp("from")], 2)));
+        let both = "signal.chirp.from = ['1 Hz', '2 Hz']\nsignal.chirp.to = { from = '9 Hz', to = '12 Hz', count = 4 }";
+        assert_eq!(keys(both), Ok((vec![chirp("from"), chirp("to")], 8)));
+        assert_eq!(keys("repeat.wall.count = [5, 10]"), Ok((vec!["repeat.wall.count".to_owned()], 2)));
+        assert_eq!(keys("block.tilt = { from = '1 deg', to = '3 deg', count = 3 }"), Ok((vec![block("tilt")], 3)));
+        let mixed = keys("block.tilt = { from = ['1 deg'], to = '3 deg', count = 3 }").unwrap_err();
+        assert!(mixed.contains("block.tilt.from"), "{mixed}");
+    }
 }
