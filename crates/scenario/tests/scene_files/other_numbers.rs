@@ -9,7 +9,7 @@ use teeter_scenario::value::Value;
 /// A value as written, with another number in the place of its own.
 fn other(written: &str) -> String {
     let unit = written.find(|c: char| !c.is_ascii_digit() && !".-+eE".contains(c)).unwrap_or(written.len());
-    // A unit such as `e` isn't there, but `m` and `deg` follow a space.
+    // Units follow a space, so the `e` here is that of an exponent.
     let (number, unit) = written.split_at(unit);
     match (number.parse::<i64>(), number.parse::<f64>()) {
         (Ok(whole), _) if unit.is_empty() => (whole + 1).to_string(),
@@ -52,6 +52,12 @@ fn whichever_number_changes_the_scene_is_that_of_the_text_alone() {
             let mut sets = numbers.clone();
             sets[number].1 = other(&sets[number].1);
             compare(&sets, &sets[number].0);
+            // And one that lies elsewhere in the text beside it.
+            let second = (number + numbers.len() / 2) % numbers.len();
+            if second != number {
+                sets[second].1 = other(&sets[second].1);
+                compare(&sets, &format!("{} and {}", sets[number].0, sets[second].0));
+            }
             changed += 1;
         }
         compare(&numbers, "again as it is");
