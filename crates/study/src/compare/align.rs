@@ -39,6 +39,15 @@ const CANDIDATES: usize = 5;
 const ROUGH: f64 = 0.01;
 /// And the best: 50 sections.
 pub(crate) const FINE: f64 = 3.6e-11;
+/// Mean square differences of two shifts are as good as equal where they are within so many standard deviations of their quotient, as if
+/// differences were normal noise, ...
+const DEVIATIONS: f64 = 3.0;
+/// ... or below this share of the mean squares of both motions, which interpolation between rows may leave.
+const NEGLIGIBLE: f64 = 1e-8;
+/// Of shifts that are as good, one is better that explains so many times the rows.
+const MORE_ROWS: f64 = 1.1;
+/// Refined to the end are those that fit this much worse than the best by the rough search.
+const WORTH_REFINING: f64 = 4.0;
 /// Fewest rows that can be aligned.
 const FEWEST_ROWS: usize = 4;
 /// At least this share of the shorter motion has to be compared.
@@ -53,6 +62,19 @@ pub struct Aligned {
     pub motion: MeasuredMotion,
     /// The rows in which a quantity is off on its own: they don't count for the alignment.
     pub outliers: Vec<usize>,
+    /// Other shifts and sides that fit as well, those with the most rows first.
+    pub alternatives: Vec<Alternative>,
+}
+
+/// A shift and a side that fit about as well as the best.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Alternative {
+    /// Time of the run at t = 0 of the measured motion, s.
+    pub shift: f64,
+    /// The side.
+    pub sign: Sign,
+    /// Rows that are compared with it.
+    pub rows: usize,
 }
 
 /// Aligns a measured motion with a run up to time `end` (s): of the shifts and sides that are not
@@ -74,6 +96,22 @@ pub fn align(measured: &Measured, trace: &MotionTrace, end: f64, offset: f64, se
     aligned.outliers.sort_unstable();
     aligned.outliers.dedup();
     aligned
+}
+
+/// What fits as well as a shift and a side that were found otherwise, the best of all included, with the settings of [`align`].
+pub(crate) fn alternatives_to(
+    chosen: (f64, Sign),
+    measured: &Measured,
+    trace: &MotionTrace,
+    end: f64,
+    offset: f64,
+    settings: AlignmentSettings,
+) -> Vec<Alternative> {
+    let Aligned { alignment: Alignment { shift, sign, .. }, alternatives, motion, .. } =
+        align(measured, trace, end, offset, settings);
+    let others = std::iter::once(Alternative { shift, sign, rows: motion.t.len() }).chain(alternatives);
+    let is_chosen = |one: &Alternative| one.sign == chosen.1 && (one.shift - chosen.0).abs() <= motion.interval();
+    others.filter(|one| !is_chosen(one)).collect()
 }
 
 /// Those of the suspected values that the run doesn't have either.
@@ -106,36 +144,78 @@ fn align_without(
     off: &[(usize, usize)],
 ) -> Aligned {
     let start = trace.at(0.0).map_or(0.0, |motion| motion.of(Channel::Phi));
-    // With the mismatch from each side, of which the smaller one is right.
     let seen_from = |sign: Sign| {
         let mut motion = measured.motion(sign);
         set_zero(&mut motion, sign.factor() * offset, start);
-        let SideFit { shift, mismatch, from_here, tells_side, by } =
-            SideFit::of(&without(&motion, off), trace, end, settings.shift);
-        let shift_found = settings.shift.is_none();
-        let sign_found = settings.sign.is_none() && tells_side;
-        let alignment = Alignment { shift, shift_found, sign, sign_found, by, mismatch };
-        (from_here, Aligned { alignment, motion, outliers: Vec::new() })
+        let fit = SideFit::of(&without(&motion, off), trace, end, settings.shift);
+        (sign, motion, fit)
     };
-    if let Some(sign) = settings.sign {
-        return seen_from(sign).1;
+    let (chosen, other) = match settings.sign {
+        Some(sign) => (seen_from(sign), None),
+        None => {
+            let [as_is, reversed] = [Sign::AsIs, Sign::Reversed].map(seen_from);
+            // Of an exact tie, the side as it is.
+            let turned = reversed.2.is_better_than(&as_is.2);
+            if turned { (reversed, Some(as_is)) } else { (as_is, Some(reversed)) }
+        }
+    };
+    let (sign, motion, fit) = chosen;
+    let list = |sign: Sign, fits: &[ShiftFit]| -> Vec<Alternative> {
+        fits.iter().map(|ShiftFit { shift, rows, .. }| Alternative { shift: *shift, sign, rows: *rows }).collect()
+    };
+    let mut alternatives = list(sign, &fit.as_good);
+    if let Some((sign, _, other)) = other.filter(|(.., other)| other.tells_side && other.is_as_good_as(&fit)) {
+        alternatives.extend(list(sign, &[other.fit]));
+        alternatives.extend(list(sign, &other.as_good));
     }
-    let [as_is, reversed] = [Sign::AsIs, Sign::Reversed].map(seen_from);
-    // Of an exact tie, the side as it is.
-    if reversed.0 < as_is.0 { reversed.1 } else { as_is.1 }
+    alternatives.sort_by_key(|found| std::cmp::Reverse(found.rows));
+    let alignment = Alignment {
+        shift: fit.fit.shift,
+        shift_found: settings.shift.is_none(),
+        sign,
+        sign_found: settings.sign.is_none() && fit.tells_side,
+        by: fit.by,
+        mismatch: fit.fit.mismatch,
+    };
+    Aligned { alignment, motion, outliers: Vec::new(), alternatives }
+}
+
+/// How a shift fits.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShiftFit {
+    /// The time shift, s.
+    pub(crate) shift: f64,
+    /// The mismatch of the quantity by which motions are aligned; infinite if too little of them is at the same time.
+    pub(crate) mismatch: f64,
+    /// Rows that are compared.
+    rows: usize,
+}
+
+impl ShiftFit {
+    const NONE: Self = Self { shift: 0.0, mismatch: f64::INFINITY, rows: 0 };
+
+    /// Whether it can't be told from this one, which fits better, with as many rows as they have.
+    pub(crate) fn is_as_good_as(&self, best: &Self) -> bool {
+        let spread = (2.0 / self.rows as f64 + 2.0 / best.rows as f64).sqrt();
+        self.mismatch.is_finite() && self.mismatch <= (1.0 + DEVIATIONS * spread) * best.mismatch.max(NEGLIGIBLE)
+    }
+
+    pub(crate) fn explains_more_than(&self, other: &Self) -> bool {
+        self.rows as f64 > MORE_ROWS * other.rows as f64
+    }
 }
 
 /// How a motion as seen from one side fits a run.
 pub(crate) struct SideFit {
-    /// The time shift, s.
-    pub(crate) shift: f64,
-    /// The mismatch of the leading quantity, by which they are aligned; infinite if too little of them is at the same time.
-    pub(crate) mismatch: f64,
-    /// With it that of the quantity that tells the side, where the leading one looks the same from both, as a fall does. Of the two
-    /// sides that with the smaller one is right.
+    /// The best shift, or that which was given.
+    pub(crate) fit: ShiftFit,
+    /// Its mismatch, and with it that of the quantity that tells the side, where the leading one looks the same from both, as a fall
+    /// does. Of the two sides that with the smaller one is right.
     pub(crate) from_here: f64,
     /// Whether any quantity above its noise tells the side.
     pub(crate) tells_side: bool,
+    /// Other shifts that fit as well.
+    as_good: Vec<ShiftFit>,
     by: Channel,
 }
 
@@ -152,15 +232,36 @@ impl SideFit {
         };
         let by = motion.leading();
         let leading = search_of(by);
-        let (shift, mismatch) = match shift {
-            Some(shift) => (shift, leading.mismatch(shift).unwrap_or(f64::INFINITY)),
+        let (fit, as_good) = match shift {
+            Some(shift) => (leading.fit(shift), Vec::new()),
             None => leading.best(),
         };
         if by.is_mirrored() {
-            return Self { shift, mismatch, from_here: mismatch, tells_side: true, by };
+            return Self { fit, from_here: fit.mismatch, tells_side: true, as_good, by };
         }
-        let telling = motion.telling_side().and_then(|channel| search_of(channel).mismatch(shift));
-        Self { shift, mismatch, from_here: mismatch + telling.unwrap_or(0.0), tells_side: telling.is_some(), by }
+        let telling = motion.telling_side().map(|channel| search_of(channel).fit(fit.shift).mismatch);
+        let telling = telling.filter(|mismatch| mismatch.is_finite());
+        let from_here = fit.mismatch + telling.unwrap_or(0.0);
+        Self { fit, from_here, tells_side: telling.is_some(), as_good, by }
+    }
+
+    /// Its fit with what tells the side.
+    pub(crate) fn whole(&self) -> ShiftFit {
+        ShiftFit { mismatch: self.from_here, ..self.fit }
+    }
+
+    /// Whether the other side, which is better, can't be told from this one.
+    fn is_as_good_as(&self, best: &Self) -> bool {
+        self.whole().is_as_good_as(&best.whole())
+    }
+
+    /// Whether this side is the better one: by its mismatch, or by its rows where that can't tell.
+    pub(crate) fn is_better_than(&self, other: &Self) -> bool {
+        let (ours, theirs) = (self.whole(), other.whole());
+        match ours.mismatch < theirs.mismatch {
+            true => !(theirs.is_as_good_as(&ours) && theirs.explains_more_than(&ours)),
+            false => ours.is_as_good_as(&theirs) && ours.explains_more_than(&theirs),
+        }
     }
 }
 
@@ -222,36 +323,54 @@ impl<'a> Search<'a> {
         Self { trace, channel, rows, interval: motion.interval(), window }
     }
 
-    /// Mean square difference with a shift, relative to the mean squares of both; `None` if too
+    /// Mean square difference with a shift, relative to the mean squares of both; infinite if too
     /// little of them is at the same time.
-    fn mismatch(&self, shift: f64) -> Option<f64> {
+    fn fit(&self, shift: f64) -> ShiftFit {
         let Window { begin, end, centred, .. } = self.window;
         let from = |time: f64| self.rows.partition_point(|(t, _)| t + shift < time);
         let (first, moving, after) = (from(begin), from(0.0), self.rows.partition_point(|(t, _)| t + shift <= end));
         if !self.window.enough(after.saturating_sub(moving)) {
-            return None;
+            return ShiftFit { shift, ..ShiftFit::NONE };
         }
         let mut hint = 0;
         let pairs: Vec<(f64, f64)> = self.rows[first..after]
             .iter()
             .filter_map(|(t, value)| Some((*value, self.trace.at_near(t + shift, &mut hint)?.of(self.channel))))
             .collect();
-        mismatch_of(&pairs, centred)
+        ShiftFit { shift, mismatch: mismatch_of(&pairs, centred).unwrap_or(f64::INFINITY), rows: pairs.len() }
     }
 
-    /// The best shift and its mismatch: of the best of all shifts on a grid each is refined.
-    fn best(&self) -> (f64, f64) {
+    /// The best shift, and others that fit as well: of the best of all shifts on a grid each is refined. Of those that fit as well, one is
+    /// best that has more rows: a motion that repeats itself fits a period off, too, where its recording reaches beyond the run.
+    fn best(&self) -> (ShiftFit, Vec<ShiftFit>) {
         let simulated =
             |t: f64, hint: &mut usize| self.trace.at_near(t, hint).map_or(0.0, |motion| motion.of(self.channel));
         let (found, reach) = candidates(&self.rows, self.interval, &self.window, simulated);
         let refined = |near: f64, reach: f64, share: f64| {
-            let of = |shift| self.mismatch(shift).unwrap_or(f64::INFINITY);
-            let shift = golden(near - reach, near + reach, share, of);
-            (shift, of(shift))
+            self.fit(golden(near - reach, near + reach, share, |shift| self.fit(shift).mismatch))
         };
-        let rough = found.iter().take(CANDIDATES).map(|found| refined(found.shift, reach, ROUGH));
-        let Some((shift, _)) = rough.min_by(|a, b| a.1.total_cmp(&b.1)) else { return (0.0, f64::INFINITY) };
-        refined(shift, 4.0 * ROUGH * reach, FINE)
+        let most = WORTH_REFINING * found.first().map_or(0.0, |best| best.mismatch.max(NEGLIGIBLE));
+        let mut nearly: Vec<_> = found.iter().skip(CANDIDATES).take_while(|found| found.mismatch <= most).collect();
+        nearly.sort_by_key(|found| std::cmp::Reverse(found.rows));
+        let chosen = found.iter().take(CANDIDATES).chain(nearly.into_iter().take(CANDIDATES));
+        let rough: Vec<ShiftFit> = chosen.map(|found| refined(found.shift, reach, ROUGH)).collect();
+        let least = |fits: &[ShiftFit]| fits.iter().copied().min_by(|a, b| a.mismatch.total_cmp(&b.mismatch));
+        let Some(best) = least(&rough) else { return (ShiftFit::NONE, Vec::new()) };
+        let most = WORTH_REFINING * best.mismatch.max(NEGLIGIBLE);
+        let worth = rough.iter().filter(|fit| fit.mismatch <= most);
+        let mut fine: Vec<ShiftFit> = worth.map(|fit| refined(fit.shift, 4.0 * ROUGH * reach, FINE)).collect();
+        let Some(best) = least(&fine) else { return (ShiftFit::NONE, Vec::new()) };
+        fine.retain(|fit| fit.is_as_good_as(&best));
+        let most = fine.iter().copied().max_by_key(|fit| fit.rows).filter(|most| most.explains_more_than(&best));
+        let best = most.unwrap_or(best);
+        // One that was found from two sides is the same.
+        let mut different: Vec<ShiftFit> = vec![best];
+        for fit in fine {
+            if different.iter().all(|known| (known.shift - fit.shift).abs() > self.interval) {
+                different.push(fit);
+            }
+        }
+        (best, different.split_off(1))
     }
 }
 
@@ -271,7 +390,8 @@ pub(crate) fn mismatch_of(pairs: &[(f64, f64)], centred: bool) -> Option<f64> {
 
 /// The time shift (s) that aligns a motion with a run, and the mismatch that is left.
 pub(crate) fn mismatch_and_shift(motion: &MeasuredMotion, trace: &MotionTrace, end: f64) -> (f64, f64) {
-    Search::new(motion, trace, end).best()
+    let (ShiftFit { shift, mismatch, .. }, _) = Search::new(motion, trace, end).best();
+    (shift, mismatch)
 }
 
 /// The minimum of a function between two points by golden sections, to this share of their distance.
@@ -376,6 +496,42 @@ mod tests {
         (trace, phi)
     }
 
+    /// A block that is shaken for a while moves on and on in the same way: a recording from the middle fits at many times, and from behind at
+    /// as many. The best is what explains all of it.
+    #[test]
+    fn of_alignments_that_fit_as_well_one_explains_more() {
+        let phi = |t: f64| 0.1 * (4.0 * std::f64::consts::PI * t).sin();
+        let rate = |t: f64| 0.4 * std::f64::consts::PI * (4.0 * std::f64::consts::PI * t).cos();
+        let mut trace = MotionTrace::default();
+        for k in 0..=4000 {
+            let t = 1e-3 * f64::from(k);
+            trace.push(t, [0.0, 0.0, phi(t)], [0.0, 0.0, rate(t)]);
+        }
+        // 2.5 s: from within the run, the whole of it fits up to 1.5 s after the start.
+        let frames = (0..412_u32).map(|k| {
+            let t = f64::from(k) / 165.0;
+            let noise = 1e-3 * (f64::from((k * 7919) % 13) / 6.0 - 1.0);
+            format!("{t:?},{:?}\n", phi(t + 1.3) + noise)
+        });
+        let text = format!("t,phi\n{}", frames.collect::<String>());
+        let measured = Measured::read(text.as_bytes(), &ColumnLayout::default(), "b").unwrap();
+        let aligned = align(&measured, &trace, 4.0, 0.0, AlignmentSettings::default());
+        let whole = |shift: f64| (0.0..=1.505).contains(&shift);
+        assert!(whole(aligned.alignment.shift), "{:?}", aligned.alignment);
+        // A period is 0.5 s, and half of one seen from behind.
+        let steps = |shift: f64, sign: Sign| (shift - 1.3 + if sign == Sign::AsIs { 0.0 } else { 0.25 }) / 0.5;
+        for found in &aligned.alternatives {
+            let off = steps(found.shift, found.sign);
+            assert!((off - off.round()).abs() < 2e-3, "{found:?}");
+            assert_eq!(found.rows == 412, whole(found.shift), "{found:?}");
+        }
+        let of_side = |sign| aligned.alternatives.iter().filter(|found| found.sign == sign).count();
+        assert!(of_side(Sign::AsIs) >= 2 && of_side(Sign::Reversed) >= 2, "{:?}", aligned.alternatives);
+        // What is known leaves nothing to choose.
+        let known = AlignmentSettings { shift: Some(1.3), sign: Some(Sign::AsIs) };
+        assert!(align(&measured, &trace, 4.0, 0.0, known).alternatives.is_empty());
+    }
+
     #[test]
     fn a_long_recording_is_not_aligned_a_period_off() {
         let (trace, phi) = long_motion();
@@ -390,7 +546,9 @@ mod tests {
             let motion = measured.motion(Sign::AsIs);
             let (shift, mismatch) = mismatch_and_shift(&motion, &trace, 60.0);
             assert!((shift - begin).abs() < 2e-4 && mismatch < 1e-4, "from {begin} s: {shift} s, {mismatch}");
-            let found = align(&measured, &trace, 60.0, 0.0, AlignmentSettings::default()).alignment;
+            let aligned = align(&measured, &trace, 60.0, 0.0, AlignmentSettings::default());
+            assert!(aligned.alternatives.is_empty(), "from {begin} s: {:?}", aligned.alternatives);
+            let found = aligned.alignment;
             assert!(found.sign == Sign::AsIs && (found.shift - begin).abs() < 2e-4, "from {begin} s: {found:?}");
         }
     }

@@ -17,7 +17,9 @@ const POINTS_PER_ROW: f64 = 4.0;
 pub(super) struct Candidate {
     pub(super) shift: f64,
     /// About what is left at the best shift next to it.
-    mismatch: f64,
+    pub(super) mismatch: f64,
+    /// Rows that it has within the run.
+    pub(super) rows: usize,
 }
 
 /// The local minima of the mismatch over all shifts, best first, and the distance (s) within which
@@ -56,11 +58,14 @@ pub(super) fn candidates(
     }
     let longest = places.last().copied().unwrap_or(0) + 1;
     let sums = Sums::new(&places, &values, &other, (count + longest).next_power_of_two(), window.centred);
+    // The rows whose times are within the run, and those after its start.
+    let rows_at = |lag: usize| {
+        let from = |point: usize| places.partition_point(|place| place + lag < point);
+        (from(held), from(before), from(count))
+    };
     let mismatch: Vec<f64> = (0..count)
         .map(|lag| {
-            // The rows whose times are within the run, and those after its start.
-            let from = |point: usize| places.partition_point(|place| place + lag < point);
-            let (a, moving, b) = (from(held), from(before), from(count));
+            let (a, moving, b) = rows_at(lag);
             if window.enough(b - moving) { sums.mismatch(lag, a, b) } else { f64::INFINITY }
         })
         .collect();
@@ -76,7 +81,8 @@ pub(super) fn candidates(
             let (slope, bend) = (0.5 * (c - a), a - 2.0 * b + c);
             let (off, less) =
                 if bend > 0.0 && bend.is_finite() { (-slope / bend, 0.5 * slope * slope / bend) } else { (0.0, 0.0) };
-            Some(Candidate { shift: at(lag as f64 + off), mismatch: b - less })
+            let (from, _, to) = rows_at(lag);
+            Some(Candidate { shift: at(lag as f64 + off), mismatch: b - less, rows: to - from })
         })
         .collect();
     found.sort_by(|a, b| a.mismatch.total_cmp(&b.mismatch));

@@ -10,8 +10,8 @@ mod outliers;
 mod trace;
 mod write;
 
-pub use align::{Aligned, Alignment, AlignmentSettings, align};
-pub(crate) use align::{FINE, SideFit, golden, mismatch_and_shift, mismatch_of, set_zero};
+pub use align::{Aligned, Alignment, AlignmentSettings, Alternative, align};
+pub(crate) use align::{FINE, ShiftFit, SideFit, alternatives_to, golden, mismatch_and_shift, mismatch_of, set_zero};
 pub use constant::Constant;
 pub use cycles::{HalfCycle, HalfCyclePair, ImpactPair, Swing, pair_half_cycles, pair_impacts, swing};
 pub use differences::{ChannelComparison, Differences};
@@ -19,7 +19,7 @@ pub(crate) use trace::Tracer;
 pub use trace::{MotionTrace, TraceError};
 pub use write::sentences_of;
 pub use write::{FILES, half_cycle_csv, impact_csv, json, page, rows_csv, svg_figures};
-pub(crate) use write::{STYLE, fixed, horizon_note, motion_figures, origin_of_side, outliers};
+pub(crate) use write::{STYLE, fixed, horizon_note, motion_figures, origin_of_side, other_alignments, outliers};
 
 use crate::measured::{Channel, LocalFit, Measured, MeasuredMotion, local_fit};
 
@@ -74,6 +74,8 @@ pub struct Comparison {
     pub channels: Vec<ChannelComparison>,
     /// The rows in which a quantity is off on its own, as where a tracker lost the block: they don't count for the alignment.
     pub outliers: Vec<usize>,
+    /// Other shifts and sides that fit as well as the alignment.
+    pub alternatives: Vec<Alternative>,
     /// Whether the measured angle was taken to be in rad for want of a unit.
     pub phi_without_unit: bool,
     /// The rows that are compared where they have values: of the run, from its t = 0 up to the horizon.
@@ -126,7 +128,7 @@ impl Comparison {
     ) -> Result<Self, CompareError> {
         let end = settings.horizon.map_or(trace.end(), |horizon| horizon.min(trace.end()));
         let aligned = align(measured, &trace, end, settings.offset, settings.alignment);
-        let Aligned { alignment, mut motion, outliers } = aligned;
+        let Aligned { alignment, mut motion, outliers, alternatives } = aligned;
         motion.t.iter_mut().for_each(|t| *t += alignment.shift);
         let begin = if trace.is_held() { f64::NEG_INFINITY } else { 0.0 };
         // A row that rounding puts beyond the end belongs to the run.
@@ -172,6 +174,7 @@ impl Comparison {
             trace,
             channels,
             outliers,
+            alternatives,
             phi_without_unit,
             rows,
             held,

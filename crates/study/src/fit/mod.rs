@@ -12,7 +12,7 @@ pub use confidence::{Estimate, TradeOff};
 pub use keys::FitKey;
 pub use write::{FILES, csv, figures, json, page, sentences};
 
-use crate::compare::{AlignmentSettings, CompareSettings, Comparison, SideFit, set_zero};
+use crate::compare::{AlignmentSettings, CompareSettings, Comparison, ShiftFit, SideFit, alternatives_to, set_zero};
 use crate::measured::{Measured, Sign};
 use crate::sweep::sample::{Method, Sampler};
 use crate::{Failure, Setting, StudyScene, divergence, runner};
@@ -275,7 +275,11 @@ impl Fit {
             ..objective
         };
         let trace = whole.trace(&setting).map_err(|failure| FitError::NoMotion(failure.to_string()))?;
-        let comparison = compared(trace, fitted.shift, fitted.offset)?;
+        let offset = objective.sign.factor() * fitted.offset;
+        let chosen = (fitted.shift, objective.sign);
+        let alternatives = alternatives_to(chosen, measured, &trace, fitted_until, offset, settings.alignment);
+        let mut comparison = compared(trace, fitted.shift, fitted.offset)?;
+        comparison.alternatives = alternatives;
         let before = own.as_ref().and_then(|_| whole.trace(&Setting::none()).ok());
         let before = before.and_then(|trace| compared(trace, fitted.shift, fitted.offset).ok());
         let value = |trial: &Trial| keys.iter().zip(&trial.at).map(|(key, share)| key.at(*share)).collect::<Vec<f64>>();
@@ -399,13 +403,14 @@ fn search<'a>(
         Ok::<Vec<SideFit>, Failure>(objectives.iter().map(of_side).collect())
     };
     // A given side needs no quantity that tells it.
-    let mismatch = |of: &SideFit| if settings.alignment.sign.is_some() { of.mismatch } else { of.from_here };
+    let fit = |of: &SideFit| if settings.alignment.sign.is_some() { of.fit } else { of.whole() };
+    let mismatch = |of: &SideFit| fit(of).mismatch;
     let results = runner::in_order(&places, settings.threads, cancel, work, |_| {
         done += 1;
         report("values all over the ranges", done, total);
     });
-    // The side, its mismatch, whether anything tells it, and the number of the values.
-    let mut ranked: Vec<(usize, f64, bool, usize)> = Vec::new();
+    // The side, how it fits, whether anything tells it, and the number of the values.
+    let mut ranked: Vec<(usize, ShiftFit, bool, usize)> = Vec::new();
     let mut why = "no run came to its end".to_owned();
     for (number, result) in results.into_iter().enumerate() {
         let cost = match result {
@@ -415,16 +420,22 @@ fn search<'a>(
                 f64::INFINITY
             }
             Some(Ok(sides)) => {
-                ranked.extend(sides.iter().enumerate().map(|(side, of)| (side, mismatch(of), of.tells_side, number)));
+                ranked.extend(sides.iter().enumerate().map(|(side, of)| (side, fit(of), of.tells_side, number)));
                 sides.iter().map(mismatch).fold(f64::INFINITY, f64::min)
             }
         };
         let values = keys.iter().zip(&places[number]).map(|(key, share)| key.at(*share)).collect();
         evaluations.push(Evaluation { stage: "samples", values, cost, until: None });
     }
-    ranked.retain(|(_, mismatch, ..)| mismatch.is_finite());
-    ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let Some(&(side, _, tells_side, _)) = ranked.first() else { return Err(FitError::NoMotion(why)) };
+    ranked.retain(|(_, fit, ..)| fit.mismatch.is_finite());
+    ranked.sort_by(|a, b| a.1.mismatch.total_cmp(&b.1.mismatch));
+    let Some(&(first, best, ..)) = ranked.first() else { return Err(FitError::NoMotion(why)) };
+    // The other side may fit as well, with more rows.
+    let other = ranked
+        .iter()
+        .find(|(side, ..)| *side != first)
+        .filter(|(_, other, ..)| other.is_as_good_as(&best) && other.explains_more_than(&best));
+    let Some(&(side, _, tells_side, _)) = other.or(ranked.first()) else { return Err(FitError::NoMotion(why)) };
     let chosen = objectives.into_iter().nth(side).ok_or(FitError::Interrupted)?;
     let near = ranked.iter().filter(|(other, ..)| *other == side).map(|(.., number)| *number);
     let is_own = |number: usize| own.is_some() && number == 0;

@@ -1,7 +1,9 @@
 //! What a fit writes.
 
 use super::{Estimate, Fit};
-use crate::compare::{Alignment, STYLE, fixed, horizon_note, motion_figures, origin_of_side, outliers, sentences_of};
+use crate::compare::{
+    Alignment, STYLE, fixed, horizon_note, motion_figures, origin_of_side, other_alignments, outliers, sentences_of,
+};
 use crate::measured::Sign;
 use crate::write::{html_list, html_table, percent, power, short};
 use serde_json::{Value, json};
@@ -301,6 +303,7 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
         },
         origin_of_side(sign_found, fit.sign_given)
     ));
+    texts.extend(other_alignments(&fit.comparison));
     texts.push("the 95 % intervals hold if the keys that were not varied have the right values".to_owned());
     texts.push(match fit.restarts.get(1) {
         None => format!("all searches ended at these values; {} runs were made", fit.evaluations.len()),

@@ -140,7 +140,7 @@ fn run_case(sweep: &Sweep, source: &StudyScene, number: u64, cancel: &Arc<Atomic
             return Err(Some(at(&row.error)));
         }
         let cell = decides.and_then(|place| row.outputs.get(place));
-        match cell.and_then(|cell| find.until.holds(cell)) {
+        match cell.and_then(|cell| find.until.holds(cell, sweep.outputs())) {
             Some(holds) => Ok((holds, Some(row))),
             None => {
                 let row = at("the output that decides has no value");

@@ -112,11 +112,29 @@ impl Criterion {
         outputs.iter().find(ours).map(Output::name)
     }
 
-    /// Whether it holds, by the cell of its column; `None` where the cell doesn't say.
-    pub(crate) fn holds(&self, cell: &str) -> Option<bool> {
+    /// Whether it holds, by the cell of its column among these outputs; `None` where the cell doesn't say. What the summary of a run
+    /// hasn't got, such as a second impact, is above nothing; the value of a column at a time that the run didn't reach isn't known.
+    pub(crate) fn holds(&self, cell: &str, outputs: &[Output]) -> Option<bool> {
         match self {
             Self::Overturned => Some(!cell.is_empty()),
-            Self::Above { value, .. } => cell.parse::<f64>().ok().map(|number| number > *value),
+            Self::Above { value, .. } => match cell.is_empty() {
+                true => self.is_absent(cell, outputs).then_some(false),
+                false => cell.parse::<f64>().ok().map(|number| number > *value),
+            },
         }
+    }
+
+    /// Whether the cell is that of a run whose summary hasn't got the output.
+    pub(crate) fn is_absent(&self, cell: &str, outputs: &[Output]) -> bool {
+        let Self::Above { output: name, .. } = self else { return false };
+        cell.is_empty() && outputs.iter().any(|output| output.name() == name && output.summary_path().is_some())
+    }
+
+    /// Of how many cases the summary hasn't got the output, as a sentence; none where all have.
+    pub(crate) fn absent(&self, cells: &[&str], outputs: &[Output]) -> Option<String> {
+        let Self::Above { output, .. } = self else { return None };
+        let absent = cells.iter().filter(|cell| self.is_absent(cell, outputs)).count();
+        let (have, count) = if absent == 1 { ("has", "counts") } else { ("have", "count") };
+        (absent > 0).then(|| format!("{} {have} no {output} and {count} as not above.", super::counted(absent as u64)))
     }
 }

@@ -65,6 +65,9 @@ pub fn json(comparison: &Comparison, block: &str, run: &str, measured: &str) -> 
         "sign_found": alignment.sign_found,
         "aligned_by": alignment.by.word(),
         "mismatch": alignment.mismatch,
+        "other_alignments": comparison.alternatives.iter().map(|found| json!({
+            "time_shift": found.shift, "sign": found.sign.factor(), "rows": found.rows,
+        })).collect::<Vec<_>>(),
         "outlier_lines": comparison.outliers.iter().filter_map(|row| comparison.measured.lines.get(*row)).collect::<Vec<_>>(),
         "phi_offset": settings.offset,
         "window_rows": settings.window,

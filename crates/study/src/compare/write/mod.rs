@@ -12,7 +12,7 @@ pub use json::json;
 pub use page::page;
 pub(crate) use page::{STYLE, fixed, horizon_note};
 pub use sentences::sentences_of;
-pub(crate) use sentences::{origin_of_side, outliers};
+pub(crate) use sentences::{origin_of_side, other_alignments, outliers};
 pub use table::{half_cycle_csv, impact_csv, rows_csv};
 
 /// All files that a comparison may write; the figures depend on the table.

@@ -24,6 +24,35 @@ fn coarse_run(comparison: &Comparison) -> Option<String> {
     })
 }
 
+/// Of so many other alignments each is named.
+const NAMED: usize = 3;
+
+/// A warning where other shifts or sides fit as well.
+pub(crate) fn other_alignments(comparison: &Comparison) -> Option<String> {
+    let others = &comparison.alternatives;
+    let named: Vec<String> = others
+        .iter()
+        .take(NAMED)
+        .map(|found| {
+            let side = match found.sign {
+                Sign::AsIs => "seen as in the scene",
+                Sign::Reversed => "seen from behind",
+            };
+            format!("t = {} s {side} ({} rows)", fixed(found.shift, 5), found.rows)
+        })
+        .collect();
+    (!named.is_empty()).then(|| {
+        let more = match others.len() - named.len() {
+            0 => String::new(),
+            more => format!(", and {more} more"),
+        };
+        format!(
+            "warning: other alignments fit as well, as where a motion repeats itself: {}{more}; give --shift or --sign if they are known",
+            named.join(", ")
+        )
+    })
+}
+
 /// What was found, in sentences.
 #[must_use]
 pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
@@ -44,6 +73,7 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
             alignment.by.word()
         ));
     }
+    texts.extend(other_alignments(comparison));
     texts.extend(outliers(comparison));
     texts.extend(coarse_run(comparison));
     let rows = &comparison.rows;

@@ -107,6 +107,8 @@ struct Seen {
     /// By group, in the order of the groups' names.
     groups: Vec<Vec<Observation>>,
     names: Vec<String>,
+    /// Of cases whose event or intensity isn't there.
+    notes: Vec<String>,
 }
 
 impl Seen {
@@ -126,15 +128,24 @@ impl Seen {
         let mut groups: BTreeMap<String, Vec<Observation>> = BTreeMap::new();
         let mut observations = Vec::new();
         for (k, (cell, intensity)) in cells.iter().zip(&intensities).enumerate() {
-            let Some(event) = asked.event.holds(cell).filter(|_| intensity.is_finite()) else { continue };
+            let event = asked.event.holds(cell, study.sweep.outputs());
+            let Some(event) = event.filter(|_| intensity.is_finite()) else { continue };
             let seen = Observation { intensity: *intensity, event };
             observations.push(seen);
             let alone = || k.to_string();
             let name = others.iter().filter_map(|column| column.get(k).copied()).collect::<Vec<_>>().join("\u{1f}");
             groups.entry(if others.is_empty() { alone() } else { name }).or_default().push(seen);
         }
+        let mut notes: Vec<String> = Vec::new();
+        if let Some(absent) = asked.event.absent(&cells, study.sweep.outputs()) {
+            notes.push(if study.name.is_empty() { absent } else { format!("`{}`: {absent}", study.name) });
+        }
+        if cells.len() > observations.len() {
+            let what = format!("a number for the event or for {column}");
+            notes.push(study.left_out(cells.len() - observations.len(), &what));
+        }
         let (names, groups) = groups.into_iter().unzip();
-        Self { observations, groups, names }
+        Self { observations, groups, names, notes }
     }
 
     /// Fits of resampled groups, in the order of the draws.
@@ -232,7 +243,7 @@ pub(super) fn figure(studies: &[Ensemble]) -> Result<StudyFigure, AxisError> {
     }
     let mut notes = parts.notes;
     notes.push(format!(
-        "P(event | x) = Φ(ln(x/θ)/β) by maximum likelihood over all cases. Bands and intervals hold {} % of {RESAMPLES} fits to \
+        "P(event | x) = Φ(ln(x/θ)/β) by maximum likelihood over the cases. Bands and intervals hold {} % of {RESAMPLES} fits to \
          groups drawn with replacement. A group is the cases under one record, as these are not independent; in a study whose record doesn't \
          vary, the cases whose keys but the intensity and the scale of the motion are the same.",
         100.0 * CONFIDENCE
@@ -388,8 +399,9 @@ impl Parts {
                 self.notes.push(format!("{}: no curve, as {why}.", study.about(label)));
             }
         }
-        if study.table.incomplete() > 0 {
-            let note = study.left_out(study.table.incomplete(), "a result");
+        let incomplete = study.table.incomplete();
+        let incomplete = (incomplete > 0).then(|| study.left_out(incomplete, "a result"));
+        for note in curve.seen.notes.iter().cloned().chain(incomplete) {
             if !self.notes.contains(&note) {
                 self.notes.push(note);
             }
@@ -464,7 +476,7 @@ mod tests {
             let observations = (0..2 * intensities)
                 .map(|k| Observation { intensity: 1.0 + f64::from(k % intensities), event: k % 2 == 0 })
                 .collect();
-            Seen { observations, groups: Vec::new(), names: Vec::new() }.shares()
+            Seen { observations, groups: Vec::new(), names: Vec::new(), notes: Vec::new() }.shares()
         };
         let (few, many) = (shares(40), shares(41));
         assert_eq!((few.of.len(), few.grouped), (40, false));
@@ -472,6 +484,31 @@ mod tests {
         assert!(many.grouped && cases.iter().sum::<usize>() == 82, "{cases:?}");
         assert!(cases.len() == 10 && cases.iter().all(|cases| [8, 9].contains(cases)), "{cases:?}");
         assert!(grouping("s", 82).contains("10 groups of 8 or 9 cases") && grouping("s", 90).contains("of 9 cases"));
+    }
+
+    /// A run without a second impact is one in which none was strong; what a table doesn't have otherwise isn't known.
+    #[test]
+    fn what_a_run_has_not_got_is_not_above() {
+        let study = |outputs: &str| {
+            let text = format!(
+                "scene = \"s.toml\"\n[grid]\ntime.end = [\"1 s\", \"2 s\", \"3 s\", \"4 s\"]\n[outputs]\n{outputs}\n[fragility]\n\
+                 event = {{ output = \"blow\", above = 1.0 }}\nintensity = \"time.end\"\n"
+            );
+            let sweep = Sweep::read(&text, "f", &|_, _| Err("none".to_owned())).unwrap();
+            let table = "case,time.end,blow,status,error\n0,1.0,,complete,\n1,2.0,0.5,complete,\n2,3.0,2.0,complete,\n3,4.0,,complete,\n";
+            Ensemble { name: String::new(), sweep, table: StudyTable::read(table).unwrap() }
+        };
+        let seen = |study: &Ensemble| {
+            let asked = study.sweep.wanted().fragility.clone().unwrap();
+            let seen = Seen::of(study, &asked, "time.end");
+            (seen.observations.iter().map(|one| one.event).collect::<Vec<_>>(), seen.notes)
+        };
+        let (events, notes) = seen(&study("blow = \"impacts.1.impulse_n\""));
+        assert_eq!(events, [false, false, true, false]);
+        assert_eq!(notes, ["2 cases have no blow and count as not above."]);
+        let (events, notes) = seen(&study("blow = { at = \"0.5 s\", of = \"b.phi\" }"));
+        assert_eq!(events, [false, true]);
+        assert_eq!(notes, ["2 cases without a number for the event or for time.end are left out."]);
     }
 
     #[test]

@@ -133,7 +133,8 @@ pub(super) fn figure(study: &Ensemble, asked: &Overturning) -> Result<StudyFigur
     let (mut events, mut cases) = (0_usize, 0_usize);
     for k in 0..event.len() {
         let (x, y) = (xs[k], ys[k]);
-        let Some(holds) = asked.event.holds(event[k]).filter(|_| x.is_finite() && y.is_finite()) else { continue };
+        let holds = asked.event.holds(event[k], study.sweep.outputs());
+        let Some(holds) = holds.filter(|_| x.is_finite() && y.is_finite()) else { continue };
         cases += 1;
         events += usize::from(holds);
         let kind = kinds.as_ref().and_then(|kinds| kinds.get(k)).copied().unwrap_or_default();
@@ -170,6 +171,10 @@ pub(super) fn figure(study: &Ensemble, asked: &Overturning) -> Result<StudyFigur
         series.push(Series::cells("others", cells(rest)).number(MOST_KINDS));
     }
     let mut notes = vec![asked.event.counted(events, cases)];
+    notes.extend(asked.event.absent(&event, study.sweep.outputs()));
+    if event.len() > cases {
+        notes.push(study.left_out(event.len() - cases, "the numbers for it"));
+    }
     if study.table.incomplete() > 0 {
         notes.push(format!("{} without a result are left blank.", counted(study.table.incomplete() as u64)));
     }
