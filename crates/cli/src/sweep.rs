@@ -360,10 +360,12 @@ fn prepare(path: &Path, shard: Shard) -> Result<Study, String> {
     let sweep = Sweep::read(&text, &name, &listed).map_err(|found| present(&found))?;
     let scene = SceneSource::file(folder.join(sweep.scene()));
     let bytes = scene.read().map_err(|error| refusal(&error))?.into_owned();
+    let scene_text = String::from_utf8_lossy(&bytes).into_owned();
     let mut companions = scene.companions();
     let settings = sweep.settings_with_files();
     let source = StudyScene::with_files_of(bytes, scene.name(), scene.stem(), settings, &mut companions);
     sweep.check_keys(&source, &name).map_err(|found| present(&found))?;
+    sweep.check_scene(&source).map_err(|found| Presenter::new(&scene_text).all(&found))?;
     sweep.check_outputs(&source, &text, &name).map_err(|found| present(&found))?;
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let identity = SweepIdentity::new(&text, source.contents(), sweep.cases(), shard)

@@ -252,6 +252,34 @@ fn a_case_that_is_refused_is_a_row() {
     assert!(line.contains("block.rocker.tilt"), "with the reason: {line}");
 }
 
+/// Whatever the values, it can't be run: there is nothing to sweep.
+#[test]
+fn a_scene_that_no_case_can_be_run_with_is_refused_with_its_place() {
+    let grid =
+        "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = { from = \"2 deg\", to = \"100 deg\", count = 40 }\n";
+    let folder = study("broken", grid);
+    let scene = std::fs::read_to_string(folder.join("rocking.toml")).unwrap();
+    let line = 1 + scene.lines().position(|line| line.starts_with("width")).unwrap();
+    let place = format!("rocking.toml:{line}:");
+    let sweep = "scene = \"sweep.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n";
+    std::fs::write(folder.join("of-a-sweep.toml"), sweep).unwrap();
+    for (file, text, says) in [
+        ("sweep.toml", scene.replace("width ", "widht "), [place.as_str(), "did you mean `width`?"]),
+        ("sweep.toml", scene.replace("width ", "width = ="), [place.as_str(), "error"]),
+        ("of-a-sweep.toml", scene.clone(), ["this is a sweep, not a scene", "error"]),
+    ] {
+        std::fs::write(folder.join("rocking.toml"), text).unwrap();
+        let refused = teeter(&folder, &["sweep", file, "--out", "out"]);
+        let told = String::from_utf8(refused.stderr).unwrap();
+        assert_eq!(refused.status.code(), Some(2), "{told}");
+        assert!(says.iter().all(|words| told.contains(words)), "{told}");
+        assert!(!folder.join("out").exists());
+    }
+    // With one value that is right there are rows.
+    std::fs::write(folder.join("rocking.toml"), scene).unwrap();
+    assert!(done(&folder, &["sweep", "sweep.toml", "--out", "out"]).contains("cases have no result"));
+}
+
 #[test]
 fn what_is_wrong_in_a_sweep_file_is_told_with_its_place_and_a_remedy() {
     for (name, text, says) in [

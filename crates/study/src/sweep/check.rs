@@ -8,12 +8,14 @@ use super::spec::{Node, Reader, entries};
 use crate::{Setting, StudyScene};
 use serde_json::Value;
 use teeter_report::{EndedWord, Recorder, Summary};
-use teeter_scenario::diagnostic::{Diagnostic, Diagnostics};
+use teeter_scenario::diagnostic::{Diagnostic, Diagnostics, Severity};
 use teeter_scenario::keys::{self, PathTarget};
 use teeter_scenario::suggest::nearest;
 
 /// Parts of a summary that have all their keys in every run, whatever happens in it.
 const FIXED_PARTS: [&str; 2] = ["contact", "energy"];
+/// Cases that are looked at before a scene is said to be wrong in all of them.
+const CASES_TRIED: u64 = 16;
 /// How many columns a message lists.
 const MOST_LISTED: usize = 20;
 
@@ -50,6 +52,30 @@ impl Sweep {
             }));
         }
         if wrong.has_errors() { Err(wrong) } else { Ok(()) }
+    }
+
+    /// Refuses a scene that no case can be run with, whatever its values: cases all over the study, the first and the last among them, are
+    /// refused for the same errors of its text.
+    ///
+    /// # Errors
+    /// These errors; their places are in the scene file.
+    pub fn check_scene(&self, source: &StudyScene) -> Result<(), Diagnostics> {
+        let cases = self.cases().clamp(1, CASES_TRIED);
+        let low = self.find().map(Find::low_text);
+        let mut common: Option<Vec<Diagnostic>> = None;
+        for k in 0..cases {
+            let number = u128::from(self.cases().saturating_sub(1)) * u128::from(k) / u128::from((cases - 1).max(1));
+            let setting = self.setting(u64::try_from(number).unwrap_or(0), low.as_deref());
+            let Err(Diagnostics(found)) = source.load(&setting) else { return Ok(()) };
+            let of_text = |one: &Diagnostic| one.severity == Severity::Error && one.set.is_none();
+            let known = |one: &Diagnostic| common.as_ref().is_none_or(|common| common.contains(one));
+            let left: Vec<Diagnostic> = found.into_iter().filter(|one| of_text(one) && known(one)).collect();
+            if left.is_empty() {
+                return Ok(());
+            }
+            common = Some(left);
+        }
+        Err(Diagnostics(common.unwrap_or_default()))
     }
 
     /// Refuses outputs that no run of the scene has: a value that `summary.json` has in no run, or a
