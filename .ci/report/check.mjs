@@ -11,6 +11,7 @@ import { chromium } from "playwright-core";
 import { keyboardWalk, playByKeys, plotsWithoutWords, violations } from "./accessible.mjs";
 import { pageData } from "./columns.mjs";
 import { flatAtFirst, outOfPicture, specksAtFirst, unfoldedOnPaper, unplotted, wrongVerdicts } from "./motion.mjs";
+import { otherLegends } from "./legends.mjs";
 import { overlaps } from "./overlaps.mjs";
 import { plotsDrawn, plotsOfRounding } from "./rounding.mjs";
 
@@ -89,6 +90,7 @@ async function ofRun(page, run, problem, isFirst) {
   if (!isFirst) return;
   // What doesn't depend on the window.
   (await flatAtFirst(page, trajectory)).forEach(problem);
+  (await page.evaluate(otherLegends)).forEach((text) => problem(`refers to another legend: ${text}`));
   (await page.evaluate(unfoldedOnPaper)).forEach((text) => problem(`unfolds on paper: ${text}`));
   const data = pageData(await page.$eval("#data", (element) => element.textContent));
   wrongVerdicts(summary, trajectory, data).forEach(problem);

@@ -13,11 +13,12 @@ const plots = (() => {
   const many = 5;
   const legends = [];
 
-  /** Where a legend of many entries belongs: into a fold with their values where an earlier plot names the same curves. */
+  /** Where a legend of many entries belongs: into a fold with their values where an earlier plot has the same names for curves of the same colours
+      and dashes. */
   function folded(keys, { title, portrait }, row) {
-    const earlier = legends.find(({ labels }) => keys.every(({ label }) => labels.has(label)));
+    const earlier = legends.find(({ strokes }) => keys.every((key) => strokes.get(key.label) === stroke(key)));
     if (!earlier) {
-      legends.push({ title, labels: new Set(keys.map(({ label }) => label)) });
+      legends.push({ title, strokes: new Map(keys.map((key) => [key.label, stroke(key)])) });
       return row;
     }
     const fold = htmlElement("details", "again", undefined, row);
@@ -46,7 +47,8 @@ const plots = (() => {
       series.readout = htmlElement("b", "", "", key);
     }
     if (panel.guides?.length) {
-      panel.guideKey = htmlElement("span", "key", undefined, legend);
+      // In the sight of all, as the other plot need not have it.
+      panel.guideKey = htmlElement("span", "key", undefined, legend.closest(".again") ? row : legend);
       const swatch = svgElement("svg", { viewBox: "0 0 18 8", "aria-hidden": "true" }, panel.guideKey);
       svgElement("path", { d: "M0 4h18", class: "guide" }, swatch);
       panel.guideKey.append("critical angle");

@@ -230,6 +230,18 @@ impl PageRecorder {
         name.into_iter().chain(place).collect::<Vec<_>>().join(" ")
     }
 
+    /// How many probes the beams have.
+    pub(crate) fn probe_count(&self) -> usize {
+        self.layout.beams.iter().map(|beam| beam.probes.len()).sum()
+    }
+
+    /// The number of the probe at `x` (m) of a beam among those of all beams, which is that of its colour: a place looks alike in all plots.
+    pub(crate) fn number_of_probe(&self, beam: usize, x: f64) -> Option<usize> {
+        let before: usize = self.layout.beams[..beam].iter().map(|beam| beam.probes.len()).sum();
+        let near = |probe: &f64| (probe - x).abs() <= 1e-9 * self.scenery.beams[beam].span;
+        Some(before + self.layout.beams[beam].probes.iter().position(near)?)
+    }
+
     /// A place along a beam in the scene's unit.
     pub(crate) fn place(&self, x: f64) -> String {
         let unit = self.scenery.display.length;

@@ -308,7 +308,7 @@ fn a_scene_without_blocks_has_a_page() {
     assert!(data(&run.html)["scenery"]["blocks"].as_array().unwrap().is_empty());
     let names: Vec<String> = figures(&run.page).into_iter().map(|(file, _)| file).collect();
     assert!(names.is_empty(), "a beam that nothing bends: {names:?}");
-    assert!(run.html.contains("w at midspan (0); energy: kinetic, elastic, gravity, total (0)"));
+    assert!(run.html.contains("w at midspan, 100\u{a0}cm (0); energy: kinetic, elastic, gravity, total (0)"));
 }
 
 #[test]

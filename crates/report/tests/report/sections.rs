@@ -232,6 +232,21 @@ fn reactions_that_ring_are_pale_behind_their_means() {
 }
 
 #[test]
+fn a_place_has_one_colour_whatever_is_plotted_of_it() {
+    let page = data(&run("places", &ASKED).html);
+    let colours = |id: &str| {
+        let series = panel(&page, id).unwrap()["series"].as_array().unwrap();
+        let named = series.iter().map(|one| (one["label"].as_str().unwrap(), one["index"].as_u64().unwrap()));
+        named.filter(|(label, _)| !label.is_empty()).collect::<Vec<_>>()
+    };
+    let [first, middle] = [("9 cm", 0), ("18 cm", 1)];
+    assert_eq!(colours("w_mid"), [("midspan, 18 cm", 1), first]);
+    for id in ["section-moment", "section-shear", "section-stress"] {
+        assert!(colours(id).contains(&first) && colours(id).contains(&middle), "{id}: {:?}", colours(id));
+    }
+}
+
+#[test]
 fn forces_of_contacts_and_of_beams_have_one_unit() {
     let page = data(&run_of("units", ON_FOUR_SUPPORTS.as_bytes(), &[]).html);
     let unit = |id: &str| panel(&page, id).unwrap()["unit"].as_str().unwrap().to_owned();

@@ -148,25 +148,27 @@ impl Panels {
     pub(super) fn deflections(&mut self, recorder: &PageRecorder) {
         let scenery = &recorder.scenery;
         let several = scenery.beams.len() > 1;
-        let mut drawn = Vec::new();
+        // Places without a probe have the colours after those of the probes.
+        let (mut drawn, mut elsewhere) = (Vec::new(), 0);
         for (number, beam) in scenery.beams.iter().enumerate() {
             let first = scenery.beam_column(number);
-            let middle = if beam.probed_middle {
-                format!("midspan, {}", recorder.place(0.5 * beam.span))
-            } else {
-                "midspan".to_owned()
-            };
+            let middle = format!("midspan, {}", recorder.place(0.5 * beam.span));
             let place = |x: f64| {
                 let end = [0.0, beam.span].iter().zip(beam.supports).any(|(end, support)| *end == x && support == FREE);
                 format!("{}{}", if end { "free end, " } else { "" }, recorder.place(x))
             };
-            let places = std::iter::once(middle).chain(beam.probes.iter().map(|(x, _)| place(*x)));
-            for (k, place) in places.enumerate() {
+            let places =
+                std::iter::once((0.5 * beam.span, middle)).chain(beam.probes.iter().map(|(x, _)| (*x, place(*x))));
+            for (k, (x, place)) in places.enumerate() {
                 let values = self.curves.curve(first + k);
                 let label = if several { format!("{} {place}", beam.name) } else { place.clone() };
                 let what = if k > 0 || beam.probed_middle { "w at the probe" } else { "w at" };
+                let colour = recorder.number_of_probe(number, x).unwrap_or_else(|| {
+                    elsewhere += 1;
+                    recorder.probe_count() + elsewhere - 1
+                });
                 if holds(largest(&values), 1e-3 * beam.span) {
-                    drawn.push((label, first + k, values));
+                    drawn.push((label, first + k, colour));
                 } else {
                     self.leave_out(what, Some((label, "places")), largest(&values), "m");
                 }
@@ -184,7 +186,7 @@ impl Panels {
             format!("{holds}measured from the line through the ends of the beam")
         });
         let only_middle = drawn.len() == 1 && !several && drawn[0].0.starts_with("midspan");
-        let lines = drawn.into_iter().enumerate().map(|(number, (label, column, _))| {
+        let lines = drawn.into_iter().map(|(label, column, number)| {
             let label = if only_middle { String::new() } else { label };
             Line::of(&self.curves, column, 1.0, label, number)
         });

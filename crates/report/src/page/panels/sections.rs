@@ -36,6 +36,8 @@ impl Panels {
             let of_kind = columns.iter().zip(&values).filter(|((column, _), _)| column.kind == kind);
             for (number, ((column, k), values)) in of_kind.enumerate() {
                 let label = recorder.section_label(column);
+                let at_probe = matches!(kind, Kind::Moment | Kind::Shear | Kind::Stress).then_some(column.x).flatten();
+                let number = at_probe.and_then(|x| recorder.number_of_probe(column.beam, x)).unwrap_or(number);
                 if holds(largest(values), scale) {
                     drawn.push((*k, label, number, values));
                 } else {
