@@ -73,7 +73,12 @@
   const sumOf = (points) => points.reduce((total, { tangential }) => tangential.map((f, i) => (f === null ? null : f + (total[i] ?? 0))), []);
   const scaled = (values, factor) => values.map((f) => (f === null ? null : f * factor));
   const active = scenery.contacts.map((_, k) => k).filter((k) => forces.points.some((point) => point.contact === k));
-  const nameOf = ({ block, surface }) => `${scenery.blocks[block].name} on ${surface}`;
+  /** What a contact is between, what lies on the other first: of two blocks the one that is higher at the start. */
+  const nameOf = ({ block, surface, other }) => {
+    const names = [scenery.blocks[block].name, surface];
+    const height = (k) => frames.blocks[k].y[0];
+    return (other !== null && height(block) < height(other) ? names.reverse() : names).join(" on ");
+  };
   /** The contacts with the hardest impacts, then those with the largest forces, in their order. */
   const strongestContacts = (count) => {
     const most = (k, key) => forces.points.filter((point) => point.contact === k && point[key])

@@ -221,7 +221,8 @@ impl Plots<'_> {
         let strongest = pairs.into_iter().filter(|(_, size, _)| *size >= least).take(MOST_PAIRS);
         let figure = |(pair, _, panels): (usize, f64, Vec<Panel>)| {
             let contact = &self.recorder.scenery.contacts[pair];
-            let name = pair_file(file, &self.recorder.scenery.blocks[contact.block].name, &contact.surface);
+            let [upper, lower] = self.recorder.upper_and_lower(contact);
+            let name = pair_file(file, upper, lower);
             let figure = self.over_time(&name, title, panels);
             (name, figure)
         };
@@ -287,8 +288,7 @@ impl Plots<'_> {
                 continue;
             }
             let mut panels = Vec::new();
-            let name = (scenery.contacts.len() > 1)
-                .then(|| format!("{} on {}", scenery.blocks[contact.block].name, contact.surface));
+            let name = (scenery.contacts.len() > 1).then(|| self.recorder.upper_and_lower(contact).join(" on "));
             let weight = values(&normal).fold(0.0, f64::max) / self.panels.force_units[pair][0].1;
             let units = self.panels.force_units[pair];
             for ((what, mut lines), (prefix, factor)) in

@@ -6,7 +6,7 @@ use super::frames::Frames;
 use super::network::Network;
 use super::orbit::Orbit;
 use super::rounded;
-use super::scenery::Scenery;
+use super::scenery::{ContactDrawn, Scenery};
 use crate::closed::Closed;
 use crate::contacts::slip;
 use crate::sections::{BeamRecord, Column, Kind, columns_of};
@@ -228,6 +228,15 @@ impl PageRecorder {
         let name = (self.scenery.beams.len() > 1).then(|| beam.name.clone());
         let place = column.x.map(|x| self.place(x));
         name.into_iter().chain(place).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The names of what a contact is between, what lies on the other first: of two blocks the one that is higher at the start.
+    pub(crate) fn upper_and_lower<'a>(&'a self, contact: &'a ContactDrawn) -> [&'a str; 2] {
+        let names = [self.scenery.blocks[contact.block].name.as_str(), contact.surface.as_str()];
+        let start = self.kept.frames.rows().next().map(|(_, row)| row);
+        let height = |block: usize| start.and_then(|row| row.get(BLOCK_FRAME * block + 1).copied());
+        let below = contact.other.and_then(|other| Some(height(contact.block)? < height(other)?));
+        if below == Some(true) { [names[1], names[0]] } else { names }
     }
 
     /// How many probes the beams have.

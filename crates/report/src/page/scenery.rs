@@ -321,7 +321,11 @@ impl Scenery {
         let on_beams = on_beams(scene);
         let contacts = scene.contacts.iter().zip(&layout.pairs).take(shown).map(|(contact, pair)| {
             let drawn = pair.points.iter().map(|point| PointDrawn {
-                label: point.name.replace(['-', '.'], " "),
+                label: match point.on_side {
+                    // The beam's, not the block's.
+                    Some(_) => format!("{} of {}", point.name.replace('-', " "), scene.name_of(contact.surface)),
+                    None => point.name.replace(['-', '.'], " "),
+                },
                 block: point.block,
                 corner: point.corner,
                 short: match (point.crest, point.on_side) {

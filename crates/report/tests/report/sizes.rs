@@ -205,7 +205,10 @@ fn each_of_many_pairs_has_a_figure_that_fits_a_page() {
     assert_eq!(names("2"), ["contact_forces.svg"]);
     let of_four = names("4");
     assert_eq!(of_four.len(), 4);
-    assert!(of_four.contains(&"contact_forces-box-1-on-ground.svg".to_owned()), "{of_four:?}");
+    // The one that lies on the other comes first.
+    for name in ["box-1-on-ground", "box-2-on-box-1", "box-4-on-box-3"] {
+        assert!(of_four.contains(&format!("contact_forces-{name}.svg")), "{of_four:?}");
+    }
 }
 
 #[test]

@@ -43,7 +43,7 @@ impl Panels {
             if points.is_empty() {
                 continue;
             }
-            let name = format!("{} on {}", scenery.blocks[contact.block].name, contact.surface);
+            let name = recorder.upper_and_lower(contact).join(" on ");
             let of = || several.then(|| (name.clone(), "contacts"));
             let normal = largest(points.iter().flat_map(|(_, _, forces)| &forces.normal));
             self.normal[pair] = holds(normal, strongest);
