@@ -309,7 +309,8 @@ fn how_it_ended(summary: &Summary, why: &str) -> String {
 
 /// The summary for the user.
 fn format_summary(summary: &Summary, folder: &Path, horizon: bool, report: bool) -> String {
-    let mut text = format!("{}: {}\n", summary.title, summary.headline);
+    let reserve = summary.reserve().map_or_else(String::new, |reserve| format!("; {reserve}"));
+    let mut text = format!("{}: {}{reserve}\n", summary.title, summary.headline);
     if let Some(reason) = summary.stopped_by {
         text.push_str(&format!("  stopped at t = {} by `{}` of time.stop\n", with_unit(summary.t, "s"), reason.word()));
     }

@@ -6,7 +6,7 @@ use crate::{BeamRecord, ImpactRow, LargestDeflection, LargestStress, ReactionRan
 use crate::{made_energy, taken_energy, unlocated};
 use serde::Serialize;
 use std::collections::BTreeSet;
-use teeter_integrator::{Ended, RockingMonitor, State};
+use teeter_integrator::{Ended, Peak, RockingMonitor, State};
 use teeter_scenario::scene::{RecordScene, Scene};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::wording;
@@ -100,7 +100,7 @@ pub struct Summary {
     /// All crossings, counted; only where the list holds no more than the first of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossing_count: Option<u64>,
-    /// Peaks of the angles between crossings.
+    /// Peaks of the angles between crossings, and after the last one where the angle has turned by the end.
     pub peaks: Vec<PeakRow>,
     /// What beams bore, of those that are asked.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -385,7 +385,12 @@ impl Summary {
         let counted = record.rocking.iter().map(RockingMonitor::count).sum::<u64>();
         crossings.sort_by(|a, b| a.t.total_cmp(&b.t));
         let mut peaks: Vec<PeakRow> = monitored()
-            .flat_map(|(block, m)| m.peaks().iter().map(|p| PeakRow { t: p.t, body: block.name.clone(), phi: p.phi }))
+            .flat_map(|(block, m)| {
+                // With the one that the headline has, which no crossing has followed yet; not behind a list that is full.
+                let turned = m.turned().filter(|_| m.crossings().len() as u64 == m.count());
+                let row = |p: &Peak| PeakRow { t: p.t, body: block.name.clone(), phi: p.phi };
+                m.peaks().iter().chain(&turned).map(row).collect::<Vec<_>>()
+            })
             .collect();
         peaks.sort_by(|a, b| a.t.total_cmp(&b.t));
         let gains = &ledger.positive_contact_work;

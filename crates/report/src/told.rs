@@ -40,6 +40,13 @@ impl Summary {
         if self.impact_count > 0 { self.told.strikers } else { "" }
     }
 
+    /// What the sentence on what became of the scene has to be read with, if steps are too long for that to be relied on.
+    #[must_use]
+    pub fn reserve(&self) -> Option<&'static str> {
+        let unresolved = self.warnings.iter().any(|warning| warning.code.starts_with("under-resolved"));
+        unresolved.then_some("see the warnings")
+    }
+
     /// The deepest penetration as it is told, m: 0 where it is no more than rounding.
     #[must_use]
     pub fn told_penetration(&self) -> f64 {

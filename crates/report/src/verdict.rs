@@ -5,6 +5,7 @@
 //! contacts that pressed, too.
 
 mod carrier;
+mod columns;
 mod falling;
 mod going;
 mod headline;
@@ -44,6 +45,9 @@ const FLAT: f64 = 2.0;
 
 /// A block slid, in a word, if it did by this part of its base.
 const SLID: f64 = 0.01;
+
+/// A block that turns farther than ever at the end, and got to this part of its critical angle, tips: less may be the bending of a beam.
+const BEGAN_TO_TIP: f64 = 1e-3;
 
 /// A block rocks, in a word, if it got to this part of its critical angle.
 pub(crate) const ROCKED: f64 = 0.01;
@@ -156,6 +160,15 @@ pub struct BodyVerdict {
     /// How it moves at the end, of one that does and has no other fate.
     #[serde(skip)]
     pub(crate) going: Option<Going>,
+    /// Of one that is shaken where it stands, or hops there: whether what carries it moves at the end.
+    #[serde(skip)]
+    pub(crate) on_what_moves: bool,
+    /// Of a block that rocks as one with those below it: the lowest of them, on whose base they rock.
+    #[serde(skip)]
+    pub(crate) turns_with: Option<String>,
+    /// Of the lowest of blocks that rock as one: their largest φ/α, with the α of all of them together.
+    #[serde(skip)]
+    pub(crate) column: Option<f64>,
 }
 
 /// What is known of a block so far.
@@ -551,7 +564,9 @@ impl Fates {
                 seen.verdict(watched, (number, block), layout, state, (rocking.get(number), fell))
             })
         };
-        self.blocks.iter().zip(&watch.blocks).enumerate().filter_map(of).collect()
+        let mut verdict: Vec<BodyVerdict> = self.blocks.iter().zip(&watch.blocks).enumerate().filter_map(of).collect();
+        columns::find(&watch.blocks, scene, layout, state, rocking, &mut verdict);
+        verdict
     }
 }
 
@@ -585,6 +600,7 @@ impl Seen {
             let largest = || Some(monitor.extreme()).filter(|peak| peak.phi != 0.0);
             monitor.turned().or_else(of_crossings).or_else(largest)
         });
+        let bounces = rests.is_none() && self.bounces(watched, layout, number, state);
         let (what, t, way) = match (overturned, self.out, self.sunk, rests) {
             (Some((t, way)), ..) => (Fate::Overturned, Some(t), Some(way)),
             (None, Some((t, way)), ..) => (Fate::Left, Some(t), Some(way)),
@@ -592,6 +608,7 @@ impl Seen {
             _ if fell.is_some() => (Fate::Fell, fell, None),
             (None, None, None, Some(t)) if has_slid => (Fate::Slid, Some(t), None),
             (None, None, None, Some(t)) => (Fate::Rests, Some(t), None),
+            _ if bounces => (Fate::Moves, None, None),
             _ if rocked && !only_slides => (Fate::Rocks, peak.map(|peak| peak.t), None),
             _ if has_slid => (Fate::Slid, None, None),
             _ => (Fate::Moves, None, None),
@@ -604,12 +621,21 @@ impl Seen {
             Placement::Free { angle, .. } => self.began.map(|_| self.angle - angle),
             Placement::On { .. } => None,
         };
-        let on_its_way = rocking.filter(|monitor| what == Fate::Rocks && monitor.count() == 0);
         let tilt = layout.tilt(number, &state.q);
         let turns_on = |monitor: &&RockingMonitor| {
             let way = Way::of(tilt);
             way.sign() * watched.velocity(layout, number, state)[2] > 0.0 && monitor.extreme().phi.abs() <= tilt.abs()
         };
+        let not_upright = rocking.filter(|monitor| [Fate::Rocks, Fate::Moves].contains(&what) && monitor.count() == 0);
+        let moves = what == Fate::Moves && self.still.is_none();
+        let going = moves.then(|| self.going(watched, layout, number, state)).flatten();
+        let turning = not_upright.filter(|_| what == Fate::Rocks || (moves && going.is_none())).filter(turns_on);
+        // What stands on a beam that bends slowly turns with it.
+        let turns = |_: &&RockingMonitor| what == Fate::Rocks || self.part.is_some_and(|part| part >= BEGAN_TO_TIP);
+        let tips = turning.filter(turns).map(|_| Way::of(tilt));
+        let on_its_way = not_upright.filter(|_| what == Fate::Rocks || tips.is_some());
+        let trembles = || self.trembles(slid, SLID * base).filter(|_| moves && turning.is_none());
+        let going = going.or_else(trembles);
         BodyVerdict {
             body: layout.blocks[number].name.clone(),
             what,
@@ -642,10 +668,15 @@ impl Seen {
             },
             tumbled: tumbled.filter(|turn| turn.abs() >= TUMBLED && what != Fate::Overturned),
             on_its_way: on_its_way.map(|_| tilt),
-            going: (what == Fate::Moves && self.still.is_none())
-                .then(|| self.going(watched, layout, number, state).or_else(|| self.trembles(slid, SLID * base)))
-                .flatten(),
-            tips: on_its_way.filter(turns_on).map(|_| Way::of(tilt)),
+            on_what_moves: going.is_some_and(Going::stays) && {
+                let q = &state.q[layout.blocks[number].range.clone()];
+                let [vx, vy, _] = watched.carrier.velocity([q[0], q[1]], layout, state);
+                vx.hypot(vy) > watched.still_speed
+            },
+            going,
+            tips,
+            turns_with: None,
+            column: None,
         }
     }
 }

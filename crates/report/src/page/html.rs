@@ -108,8 +108,8 @@ fn verdict(summary: &Summary) -> String {
         _ = write!(html, "; the run stopped there ({})", reason.word());
     }
     // The sentence stands above what says how little it can be relied on.
-    if summary.warnings.iter().any(|warning| warning.code.starts_with("under-resolved")) {
-        html.push_str("<span class=\"reserve\">; see the warnings</span>");
+    if let Some(reserve) = summary.reserve() {
+        _ = write!(html, "<span class=\"reserve\">; {reserve}</span>");
     }
     html
 }

@@ -80,6 +80,7 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
         });
         let stands = |t: f64| (stands.0..=stands.1).contains(&t);
         let stands_alone = recorder.scenery.stands_alone(number);
+        let own = cycles.len();
         let mut peaks = summary.peaks.iter().filter(|peak| peak.body == block.name).peekable();
         for crossing in summary.crossings.iter().filter(|crossing| crossing.body == block.name) {
             let before = peaks.next();
@@ -121,6 +122,12 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
                 peak_before: before.map(|peak| peak.phi),
                 peak_after,
             });
+        }
+        // On rigid contacts one corner stands as the other comes down, unless it bounces or tumbles, which is no rocking.
+        let hits = cycles[own..].iter().filter(|cycle| cycle.omega.is_some()).count();
+        let all_kept = recorder.kept.impact_count as usize <= recorder.kept.impacts.len();
+        if 2 * hits < cycles.len() - own && all_kept && recorder.scenery.touches_rigidly(number) {
+            cycles.truncate(own);
         }
     }
     cycles

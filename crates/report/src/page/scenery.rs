@@ -245,6 +245,12 @@ impl Scenery {
         }) || self.crowd.is_some()
     }
 
+    /// Whether none of a block's contacts has springs.
+    pub(crate) fn touches_rigidly(&self, block: usize) -> bool {
+        let own = |contact: &&ContactDrawn| contact.block == block || contact.other == Some(block);
+        self.contacts.iter().filter(own).all(|contact| !contact.has_duration)
+    }
+
     /// Whether a block stands on one thing only, which is ground or a beam on supports: Housner's ratio is of such a block on rigid ground. It says
     /// nothing of a column with a beam on it, or of a stone on a beam that lies on columns.
     pub(crate) fn stands_alone(&self, block: usize) -> bool {

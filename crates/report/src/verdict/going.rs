@@ -54,6 +54,11 @@ impl Going {
         }
     }
 
+    /// Whether it stays where it is on what carries it.
+    pub(super) fn stays(self) -> bool {
+        matches!(self, Self::Hops | Self::Vibrates | Self::Trembles)
+    }
+
     /// The same of several, after "are".
     pub(super) fn word_of_many(self) -> &'static str {
         match self {
@@ -93,6 +98,9 @@ const HOPS: f64 = 1e-4;
 
 /// What touches nothing for less than this part of √(R/g) doesn't fly, but chatters: a bounce as long rises by little more than a thousandth of R.
 const FLIGHT: f64 = 0.1;
+
+/// What rises by this part of R in its last flight bounces, whatever it turns by: a block that rocks hops by less as a corner lands.
+const BOUNCES: f64 = 0.02;
 
 /// What has been on its springs for this many times as long as its last flight took doesn't bounce any more.
 const STAYS: f64 = 2.0;
@@ -176,6 +184,14 @@ impl Seen {
         let along = if vx.abs() > vy.abs() { vx.signum() } else { -spin.signum() };
         let foot = speed * along + watched.reach * spin;
         Some(if foot.abs() <= 0.5 * speed { Going::Rolls } else { Going::Slides })
+    }
+
+    /// Whether it is in the air after a landing, or was so a short time ago, higher than what rocks hops.
+    pub(super) fn bounces(&self, watched: &Watched, layout: &Layout, number: usize, state: &State) -> bool {
+        let Touched { rose, landed, .. } = self.touched;
+        let high = BOUNCES * watched.reach;
+        let is_high = (rose.is_finite() && rose >= high) || (landed.is_some() && self.touched.strayed() >= high);
+        is_high && self.going(watched, layout, number, state) == Some(Going::Bounces)
     }
 
     /// Whether a block that touches something, and came down from a flight a short time ago, rises by no more than [`HOPS`], now or with all of its

@@ -97,8 +97,9 @@ fn turns(phi: f64) -> String {
 fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     let at = of.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
     let way = of.way.map_or("", |way| way.word());
-    let largest = of.max_phi_over_alpha.filter(|part| *part >= super::ROCKED);
-    let largest = largest.map_or_else(String::new, |part| format!("largest φ/α {}", self::part(part)));
+    let largest = of.column.or(of.max_phi_over_alpha).filter(|part| *part >= super::ROCKED);
+    let of_all = if of.column.is_some() { " of the column" } else { "" };
+    let largest = largest.map_or_else(String::new, |part| format!("largest φ/α{of_all} {}", self::part(part)));
     let by = |way: f64| format!("{} {}", with_unit(way.abs(), "m"), direction(scene, way).way);
     let slid = of.slid.map_or_else(String::new, |slid| match of.farthest {
         None => format!("slid by {}", by(slid)),
@@ -148,7 +149,10 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         Fate::Slid if of.rests_from.is_some() => beside(format!("{slid} and came to rest{side}{moving}{at}")),
         Fate::Slid if of.still_from.is_some() => beside(format!("{slid}{}", still(scene, of, end))),
         Fate::Slid => beside(format!("slides on, {slid} so far")),
-        Fate::Rocks if of.on_its_way.is_some() => {
+        Fate::Rocks if of.turns_with.is_some() => {
+            format!("rocks as one with `{}`", of.turns_with.as_deref().unwrap_or_default())
+        }
+        Fate::Rocks | Fate::Moves if of.on_its_way.is_some() => {
             let now = of.on_its_way.map_or_else(String::new, angle);
             if let Some(way) = of.tips {
                 return format!("is still tipping to the {}: φ {now} at {}", way.word(), time(end));
@@ -167,6 +171,15 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         }
         Fate::Moves if of.still_from.is_some() => beside(format!("moved{}", still(scene, of, end))),
         Fate::Moves => match of.going {
+            // What bounces doesn't slide, but may be elsewhere.
+            Some(Going::Bounces) if has_slid(scene, of) => {
+                let off = of.slid.unwrap_or_default();
+                let side = direction(scene, off).side;
+                beside(format!("is {}, {} {side} its start", Going::Bounces.word(), with_unit(off.abs(), "m")))
+            }
+            Some(going) if of.on_what_moves => {
+                beside(format!("is {}, on {} that moves", going.word(), below(scene, of)))
+            }
             Some(going) => beside(format!("is {}", going.word())),
             None => beside("still moves".to_owned()),
         },
@@ -218,8 +231,20 @@ fn moving_base(scene: &Scene, bodies: &[&BodyVerdict]) -> &'static str {
     match driven.as_slice() {
         all if all.iter().all(Option::is_none) => "",
         all if all.iter().all(|below| *below == Some(Driven::Ground)) => " on the moving ground",
-        [_] => " on what moves under it",
+        all if all.iter().all(|below| *below == Some(Driven::Supports)) => " on moving supports",
+        all if all.iter().all(|below| *below == Some(Driven::Block)) => " on a moving block",
         _ => " on what moves under them",
+    }
+}
+
+/// What a block stands on, in words after "on".
+fn below(scene: &Scene, of: &BodyVerdict) -> &'static str {
+    match scene.blocks.iter().find(|block| block.name == of.body).map(|block| block.placement) {
+        Some(Placement::On { support: SupportingBody::Beam(_), .. }) => "a beam",
+        Some(Placement::On { support: SupportingBody::Block(_), .. }) => "a block",
+        Some(Placement::On { support: SupportingBody::Ground, .. }) => "ground",
+        _ if !scene.beams.is_empty() => "a beam",
+        _ => "what",
     }
 }
 
@@ -294,8 +319,20 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
             tell(&resting, &what, "");
         }
     }
-    let (tipping, rocking): (Vec<_>, Vec<_>) = of(&[Fate::Rocks]).into_iter().partition(|of| of.tips.is_some());
+    let (tipping, rocking): (Vec<_>, Vec<_>) = of(&[Fate::Rocks, Fate::Moves])
+        .into_iter()
+        .filter(|of| of.what == Fate::Rocks || of.tips.is_some())
+        .partition(|of| of.tips.is_some());
+    // Blocks that turn as one rock together, on the base of the lowest.
+    let bases: Vec<_> = rocking.iter().copied().filter(|of| of.column.is_some()).collect();
+    let is_on =
+        |of: &BodyVerdict, base: &BodyVerdict| of.body == base.body || of.turns_with.as_ref() == Some(&base.body);
+    let rocking: Vec<_> = rocking.into_iter().filter(|of| !bases.iter().any(|base| is_on(of, base))).collect();
     tell(&tipping, if tipping.len() == 1 { "is still tipping" } else { "are still tipping" }, "");
+    for base in &bases {
+        let column: Vec<_> = verdict.iter().filter(|of| is_on(of, base)).collect();
+        tell(&column, &format!("rock on as one column on the base of `{}`", base.body), "");
+    }
     tell(&rocking, if rocking.len() == 1 { "rocks on" } else { "rock on" }, "");
     for going in Going::ALL {
         let these: Vec<_> = verdict.iter().filter(|of| of.going == Some(going)).collect();
@@ -308,20 +345,25 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
     let sliding: Vec<_> = of(&[Fate::Slid]).into_iter().filter(|of| of.rests_from.is_none()).collect();
     let (still, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(|of| of.still_from.is_some());
     tell(&sliding, if sliding.len() == 1 { "slides on" } else { "slide on" }, "");
-    let of_moves: Vec<_> = of(&[Fate::Moves]).into_iter().filter(|of| of.going.is_none()).collect();
+    let of_moves: Vec<_> =
+        of(&[Fate::Moves]).into_iter().filter(|of| of.going.is_none() && of.tips.is_none()).collect();
     let (at_end, moving): (Vec<_>, Vec<_>) = of_moves.into_iter().partition(|of| of.still_from.is_some());
     let still: Vec<_> = still.into_iter().chain(at_end).collect();
     tell(&still, if still.len() == 1 { "stands still at the end" } else { "stand still at the end" }, "");
     tell(&moving, if moving.len() == 1 { "still moves" } else { "still move" }, "");
     let others = || {
         let stayed = verdict.iter().filter(|of| !matches!(of.what, Fate::Fell | Fate::Overturned));
-        stayed.map(|of| of.max_phi_over_alpha)
+        let share = |of: &BodyVerdict| {
+            bases.iter().find(|base| is_on(of, base)).map_or(of.max_phi_over_alpha, |base| base.column)
+        };
+        stayed.map(share)
     };
     let largest = others().flatten().fold(0.0, f64::max);
     let of_all = parts.len() == 1 && others().all(|part| part.is_some());
     let mut text = parts.join("; ");
     if largest >= super::ROCKED {
         let whose = match of_all {
+            true if bases.len() == 1 && rocking.is_empty() => "the column",
             true => "all",
             false if fell.is_empty() => "those that didn't overturn",
             false => "those that neither fell nor overturned",

@@ -164,11 +164,17 @@ const DROPPED: &str = "time = { end = '1.5 s', step = '200 us' }\nground = {}\nm
 #[test]
 fn a_column_of_half_cycles_without_a_value_is_left_out() {
     let heads = |html: &str| {
-        let table = &html[html.find("id=\"rocking-title\"").unwrap()..];
-        table[..table.find("</thead>").unwrap()].matches("<th ").count()
+        let table = &html[html.find("id=\"rocking-title\"")?..];
+        Some(table[..table.find("</thead>")?].matches("<th ").count())
     };
-    assert_eq!(heads(&run("dropped", DROPPED).html), 3, "time, peak, and their ratio");
-    assert_eq!(heads(&scenario("free-rocking-on-ground").html), 7);
+    // So wide that Housner's ratio would be negative.
+    let soft = DROPPED
+        .replace("position = ['0 cm', '40 cm'], angle = '20 deg'", "on = 'ground', at = '0 cm', tilt = '20 deg'")
+        .replace("restitution = 0.5", "law = 'kelvin-voigt', stiffness = '20 kN/m', damping = '20 N s/m'");
+    assert_eq!(heads(&run("soft", &soft).html), Some(6), "all but Housner");
+    assert_eq!(heads(&scenario("free-rocking-on-ground").html), Some(7));
+    // What bounces passes the upright, too, with a value in a few rows at most.
+    assert_eq!(heads(&run("dropped", DROPPED).html), None);
 }
 
 #[test]
