@@ -134,12 +134,16 @@
     }
     plots.add({
       id: `state-${k}`, contact: k, title: `Contact state${suffix}`, series: [],
-      bands: points.map((point) => ({ short: several ? contact.points[point.point].short : contact.points[point.point].label.replace("bottom ", ""), name: several ? contact.points[point.point].label : undefined, state: point.state })),
+      bands: points.map(({ point, state }) => {
+        const { short, label, on_side: onSide } = contact.points[point];
+        return { short: several || onSide ? short : label.replace("bottom ", ""), name: several ? label : undefined, state };
+      }),
       height: plots.margin.top + plots.margin.bottom + plots.rowHeight * points.length,
     });
     const [, unseen] = forces.unseen_slip?.find(([of]) => of === k) ?? [];
     const notes = [
       points.some(({ state }) => state.includes("b")) ? "Presses briefly: in at most half of the steps, as what strikes or chatters." : "",
+      forces.alternating?.includes(k) ? `Sticks and slips by turns, so that its tangential force changes from step to step: the band has what it does in most of ${forces.bucket}.` : "",
       unseen ? `Slip of less than ${unseen} at a time is drawn as sticking.` : "",
     ].filter(Boolean);
     if (notes.length) htmlElement("p", "note", notes.join(" "), byId(`panel-state-${k}`));

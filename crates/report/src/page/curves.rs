@@ -90,6 +90,12 @@ struct Bucket {
 /// Less than this part of a bucket is rounding of times: all of its steps had impacts.
 const NO_REST: f64 = 1e-6;
 
+/// A stretch is mixed if a contact sticks and slips in at least this part of its steps each.
+const MIXED: f64 = 0.2;
+
+/// A contact sticks and slips by turns if more than this part of the stretches in which it touches is mixed.
+const ALTERNATES: f64 = 0.05;
+
 /// The curves of a run.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Curves {
@@ -308,10 +314,15 @@ impl Curves {
         });
         let usual = usual.collect();
         let slip = works().map(|work| work.slip).collect();
+        let touching = works().filter(|work| work.sticking + work.slipping > 0).count();
+        let mixed = works()
+            .filter(|work| work.sticking.min(work.slipping) as f64 >= MIXED * (work.sticking + work.slipping) as f64);
+        let mixed = mixed.filter(|work| work.sticking + work.slipping > 0).count();
+        let alternates = mixed as f64 > ALTERNATES * touching as f64;
         let strikes = works().any(|work| work.hardest > 0.0);
         let impacts = if strikes { works().map(|work| work.hardest).collect() } else { Vec::new() };
         let (normal, tangential) = (mean(0), mean(1));
-        Some(ForceCurve { normal, tangential, slip, state, usual, impacts, hides_slip: false })
+        Some(ForceCurve { normal, tangential, slip, state, usual, impacts, alternates, hides_slip: false })
     }
 }
 
@@ -443,6 +454,21 @@ mod tests {
             curves.add(0, [2.0, 1.0], Of::Impact { lasting: 1.0 }, ContactState::Slip, 0.0);
         }
         assert_eq!(curves.forces(0).unwrap().tangential, [1.0; 4]);
+    }
+
+    #[test]
+    fn what_sticks_and_slips_by_turns_says_so() {
+        let of = |every: u32| {
+            let mut curves = Curves::new(4, 0.0, vec![], 1);
+            for k in 1..=64 {
+                curves.enter(f64::from(k), &[]);
+                let state = if k % every == 0 { ContactState::Slip } else { ContactState::Stick };
+                curves.add(0, [1.0, 0.0], Of::Force, state, 0.0);
+            }
+            let forces = curves.forces(0).unwrap();
+            (forces.alternates, forces.does(1))
+        };
+        assert_eq!((of(3), of(64)), ((true, Does::Stick), (false, Does::Stick)));
     }
 
     #[test]

@@ -247,7 +247,7 @@ impl Plots<'_> {
         let mut pairs = Vec::new();
         for (pair, contact) in scenery.contacts.iter().enumerate() {
             let (mut normal, mut means, mut tangential, mut bands) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-            let (mut impacts, mut briefly) = (Vec::new(), false);
+            let (mut impacts, mut briefly, mut alternates) = (Vec::new(), false, false);
             let sums = self.panels.sums_tangential(pair);
             // Colours are for those that touch: of all there would be too many.
             let touching = contact.points.iter().zip(&curves[contact.first..]);
@@ -282,6 +282,7 @@ impl Plots<'_> {
                     impacts.push(step(&forces.impacts, self.panels.impulse_unit.1, label));
                 }
                 bands.push(Band::new(label, stretches(&borders, forces)));
+                alternates |= forces.alternates;
                 briefly |= (0..forces.state.len()).any(|bucket| forces.does(bucket) == Does::Briefly);
             }
             if normal.is_empty() {
@@ -308,7 +309,9 @@ impl Plots<'_> {
                     format!("means over {over}{}", if impacts.is_empty() { "" } else { " without impacts" })
                 };
                 let many = self.panels.redundant[pair].note(what == "Tangential").map(str::to_owned);
-                let note = [name.clone(), Some(meant), cut, many].into_iter().flatten().collect::<Vec<_>>().join("; ");
+                let turns = (alternates && what == "Tangential").then(|| "sticks and slips by turns".to_owned());
+                let note =
+                    [name.clone(), Some(meant), turns, cut, many].into_iter().flatten().collect::<Vec<_>>().join("; ");
                 let y = cut_axis(&format!("{what} force ({unit})"), range, &lines, least);
                 if what == "Normal" {
                     lines = over_the_raw(lines, std::mem::take(&mut means));

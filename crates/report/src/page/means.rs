@@ -192,6 +192,22 @@ pub(super) fn ringing(curves: &Curves, column: usize, period: f64) -> Option<Vec
     (far as f64 > LEAST * own.len() as f64 && crossings as f64 >= periods).then_some(means)
 }
 
+/// The largest value of a quantity that rings within half of this period (s) on either side, at the borders of the buckets: what stays of one without a
+/// sign, as a stress, of which a mean would say nothing. `None` unless it rings.
+pub(super) fn largest_about(curves: &Curves, column: usize, period: f64) -> Option<Vec<f64>> {
+    ringing(curves, column, period)?;
+    let borders = curves.borders();
+    let values = curves.curve(column);
+    let highest: Vec<f64> = values[1..].chunks_exact(2).map(|pair| pair[0].max(pair[1])).collect();
+    let about = |t: &f64| {
+        let [from, to] = [t - 0.5 * period, t + 0.5 * period];
+        let first = borders.partition_point(|border| *border <= from).saturating_sub(1);
+        let after = borders.partition_point(|border| *border < to).min(highest.len());
+        highest[first.min(after)..after].iter().copied().fold(f64::NEG_INFINITY, f64::max)
+    };
+    Some(borders.iter().map(about).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -242,6 +258,18 @@ mod tests {
             _ => 0.0,
         });
         assert_eq!(normal(&curves, &forces, longest(&curves)), None);
+    }
+
+    #[test]
+    fn of_what_has_no_sign_the_largest_of_each_period_is_left() {
+        let stress = |t: f64| (1.0 - 0.5 * t) * (2.0 * std::f64::consts::PI * 400.0 * t).sin().abs();
+        let mut curves = Curves::new(400, 0.0, vec![0.0], 0);
+        (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[stress(t)]));
+        let largest = largest_about(&curves, 0, 0.02).unwrap();
+        assert_eq!(largest.len(), curves.borders().len());
+        for (largest, t) in largest.iter().zip(curves.borders()) {
+            assert!((largest - (1.0 - 0.5 * t)).abs() < 0.02, "{largest} at {t}");
+        }
     }
 
     #[test]

@@ -15,6 +15,7 @@ mod sections;
 mod units;
 
 pub(crate) use forces::unseen_slip;
+pub(crate) use sections::after_impacts;
 use units::contact_sizes;
 pub(crate) use units::{Measure, Unit, Units, cut_at, length_unit, prefix, time_unit};
 

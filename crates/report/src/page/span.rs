@@ -1,7 +1,7 @@
 //! Plots over the span of beams: how far section forces went, and the deflected shape at chosen times.
 
 use super::content::{holds, largest};
-use super::panels::{Measure, Units};
+use super::panels::{Measure, Units, after_impacts};
 use super::recorder::{BLOCK_FRAME, PageRecorder};
 use super::widths::for_any_width;
 use crate::with_digits;
@@ -68,7 +68,8 @@ pub(super) fn envelopes(recorder: &PageRecorder, units: &Units, id: &str) -> Opt
         }
         let y = lines.iter().flat_map(Series::points).map(|point| point.1).chain([0.0]);
         let axis = Axis::around(format!("{what} ({prefix}{unit_of})"), y, 1e-6 * of(shear) * factor);
-        panels.push(Panel::new(axis).with(lines).telling_apart());
+        let note = after_impacts(recorder).filter(|_| panels.is_empty()).map(str::to_owned);
+        panels.push(Panel::new(axis).with(lines).telling_apart().note(note));
     }
     let x = Axis::between(format!("Place along the beam x ({})", unit.word()), 0.0, span * unit.per_metre());
     let title = "Bending moment and transverse force over the span, least and largest of all steps";

@@ -17,6 +17,8 @@ pub(crate) struct ForceCurve {
     pub(crate) usual: Vec<ContactState>,
     /// The largest normal impulse in a step with an impact, N·s; empty without any.
     pub(crate) impacts: Vec<f64>,
+    /// Whether it sticks and slips by turns in more than a few stretches.
+    pub(crate) alternates: bool,
     /// Whether it is told to stick somewhere where it slips by no more than rounding.
     pub(crate) hides_slip: bool,
 }
@@ -42,6 +44,21 @@ impl ForceCurve {
         }
     }
 
+    /// The largest mean normal force of the stretches of steps without impacts, N.
+    pub(crate) fn largest_between_impacts(&self) -> f64 {
+        let strikes = |k: usize| self.impacts.get(k).is_some_and(|impulse| *impulse > 0.0);
+        let between = self.normal.iter().enumerate().filter(|(k, force)| !strikes(*k) && force.is_finite());
+        between.fold(0.0, |most: f64, (_, force)| most.max(*force))
+    }
+
+    /// Takes impulses of up to `least` (N·s) for those of forces, not of impacts.
+    pub(crate) fn drop_impacts_up_to(&mut self, least: f64) {
+        self.impacts.iter_mut().filter(|impulse| **impulse <= least).for_each(|impulse| *impulse = 0.0);
+        if self.impacts.iter().all(|impulse| *impulse == 0.0) {
+            self.impacts.clear();
+        }
+    }
+
     /// Takes slip that is nothing but rounding, in all of a stretch in which the contact slips no more than that (m), for sticking.
     pub(crate) fn stick_within(&mut self, rounding: f64) {
         let mut from = 0;
@@ -64,6 +81,28 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_a_step_of_the_force_gives_is_no_impact() {
+        let of = |impacts: [f64; 4]| ForceCurve {
+            normal: vec![4.0, 5.0, 70.0, 0.0],
+            tangential: vec![0.0; 4],
+            slip: vec![0.0; 4],
+            state: vec![ContactState::Stick; 4],
+            usual: Vec::new(),
+            impacts: impacts.to_vec(),
+            alternates: false,
+            hides_slip: false,
+        };
+        // Where all steps had impacts the mean is that of these.
+        assert_eq!(of([0.0, 0.0, 7.0, 0.0]).largest_between_impacts(), 5.0);
+        let kept = |mut forces: ForceCurve| {
+            forces.drop_impacts_up_to(1.0);
+            forces.impacts
+        };
+        assert_eq!(kept(of([0.5, 0.0, 7.0, 1.0])), [0.0, 0.0, 7.0, 0.0]);
+        assert!(kept(of([0.5, 0.0, 0.7, 1.0])).is_empty());
+    }
+
+    #[test]
     fn slip_of_rounding_is_sticking_and_a_short_slide_is_not() {
         use ContactState::{Open, Slip, Stick};
         let of = |slip: [f64; 6]| {
@@ -74,6 +113,7 @@ mod tests {
                 state: vec![Slip, Slip, Open, Stick, Slip, Slip],
                 usual: Vec::new(),
                 impacts: Vec::new(),
+                alternates: false,
                 hides_slip: false,
             };
             forces.stick_within(1e-9);

@@ -170,6 +170,9 @@ pub(super) struct ForceData {
     /// Contacts whose points share their tangential force in one of many ways, of which the sum over the points is plotted.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     shares: Vec<usize>,
+    /// Contacts that stick and slip by turns, of which the band shows what they do in most of a stretch.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    alternating: Vec<usize>,
     /// Contacts that slip by so little in a stretch that it is drawn as sticking, with the most of it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     unseen_slip: Vec<(usize, String)>,
@@ -264,6 +267,9 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
     let hides = |drawn: &ContactDrawn| {
         panels.forces[drawn.first..drawn.first + drawn.points.len()].iter().flatten().any(|forces| forces.hides_slip)
     };
+    let alternates = |drawn: &ContactDrawn| {
+        panels.forces[drawn.first..drawn.first + drawn.points.len()].iter().flatten().any(|forces| forces.alternates)
+    };
     let hiding = recorder.scenery.contacts.iter().enumerate().filter(|(_, drawn)| hides(drawn));
     ForceData {
         borders: panels.curves.borders().into_iter().map(time).collect(),
@@ -278,6 +284,9 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         frictionless: (0..panels.tangential.len()).filter(|pair| !panels.tangential[*pair]).collect(),
         redundant: (0..panels.redundant.len()).filter(|pair| panels.redundant[*pair].forces).collect(),
         shares: (0..panels.redundant.len()).filter(|pair| panels.sums_tangential(*pair)).collect(),
+        alternating: (0..recorder.scenery.contacts.len())
+            .filter(|pair| alternates(&recorder.scenery.contacts[*pair]))
+            .collect(),
         unseen_slip: hiding.map(|(pair, drawn)| (pair, with_digits(unseen_slip(recorder, drawn), "m", 1))).collect(),
         points: points.collect(),
     }

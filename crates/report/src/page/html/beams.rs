@@ -2,7 +2,7 @@
 
 use super::rocking::decimals;
 use crate::page::content::largest;
-use crate::page::panels::{Measure, Units, length_unit};
+use crate::page::panels::{Measure, Units, after_impacts, length_unit};
 use crate::page::recorder::PageRecorder;
 use crate::page::span;
 use crate::sections::ReactionRange;
@@ -21,6 +21,11 @@ pub(super) fn shapes(recorder: &PageRecorder, units: &Units) -> String {
         )
     })
 }
+
+/// What is said of envelopes of a beam that blocks strike (`docs/section-forces.md`).
+const UNBOUNDED: &str = "<p class=\"note\">With impacts both depend on the step and on the elements: a blow of a rigid body is an impulse, whose \
+    peak of the transverse force near the contact grows without bound as these shrink. Compare with shorter steps and more elements before it is \
+    used.</p>\n";
 
 /// What beams bore: largest stress, reactions, envelopes.
 pub(super) fn borne(recorder: &PageRecorder, units: &Units, summary: &Summary) -> String {
@@ -61,7 +66,8 @@ pub(super) fn borne(recorder: &PageRecorder, units: &Units, summary: &Summary) -
         let _ = writeln!(
             html,
             "<section id=\"envelopes\" class=\"panel\" aria-labelledby=\"envelopes-title\">\n<h3 id=\"envelopes-title\">Moment \
-             and transverse force over the span, least and largest of all steps</h3>\n{figure}</section>"
+             and transverse force over the span, least and largest of all steps</h3>\n{figure}{}</section>",
+            after_impacts(recorder).map_or("", |_| UNBOUNDED)
         );
     }
     html.push_str(&reactions(recorder, units, summary));

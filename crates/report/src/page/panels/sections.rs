@@ -4,8 +4,16 @@ use super::{Line, Measure, Panels, Place, TimePanel};
 use crate::page::content::{holds, largest};
 use crate::page::means;
 use crate::page::recorder::PageRecorder;
+use crate::page::scenery::ContactDrawn;
 use crate::sections::Kind;
 use crate::with_digits;
+
+/// What is to be said of forces in beams that blocks strike.
+pub(crate) fn after_impacts(recorder: &PageRecorder) -> Option<&'static str> {
+    let strikes = |contact: &ContactDrawn| contact.beam.is_some() && !contact.has_duration;
+    let on_beams = recorder.scenery.contacts.iter().any(strikes);
+    (recorder.kept.impact_count > 0 && on_beams).then_some("peaks after impacts depend on step and elements")
+}
 
 impl Panels {
     /// What beams bear at their probes and supports.
@@ -63,15 +71,22 @@ impl Panels {
             let period = means::period(&self.curves, &means);
             let (mut lines, mut over) = (Vec::new(), Vec::new());
             for (column, label, number, _) in drawn {
-                let mean = if kind == Kind::Stress { None } else { means::ringing(&self.curves, column, period) };
+                let mean = match kind {
+                    Kind::Stress => means::largest_about(&self.curves, column, period)
+                        .map(|most| most.into_iter().map(|stress| factor * stress).collect()),
+                    _ => means::ringing(&self.curves, column, period),
+                };
                 let is_raw = mean.is_some();
                 let name = if is_raw { String::new() } else { label.clone() };
                 lines.push(Line { is_raw, ..Line::of(&self.curves, column, factor, name, number) });
                 over.extend(mean.map(|y| Line { label, number, y, is_raw: false, of: None }));
             }
-            let note = (!over.is_empty()).then(|| {
-                format!("pale: all steps; strong: without vibrations of periods below {}", with_digits(period, "s", 3))
-            });
+            let strong = if kind == Kind::Stress { "largest within" } else { "without vibrations of periods below" };
+            let pale = (!over.is_empty())
+                .then(|| format!("pale: all steps; strong: {strong} {}", with_digits(period, "s", 3)));
+            let peaks = (kind != Kind::AxialForce).then(|| after_impacts(recorder)).flatten();
+            let note = pale.into_iter().chain(peaks.map(str::to_owned)).collect::<Vec<_>>().join("; ");
+            let note = (!note.is_empty()).then_some(note);
             lines.extend(over);
             // What is pale stays behind all else.
             lines.sort_by_key(|line| if line.is_raw { (0, 0) } else { (1, line.number) });
