@@ -75,7 +75,7 @@ export function plotsOfRounding(drawn, data, summary, envelopes) {
     else if (["section-shear", "section-axial_force", "section-reaction"].includes(id)) each("force", () => force);
     else if (id === "section-stress") each("stress", () => section[id]);
     // The scale of the summary adds up what the rule takes the largest of: three energies.
-    else if (id === "energy" || /^works(-\d+)?$/.test(id)) each("energy", () => summary.energy.scale / 3);
+    else if (/^(energy|works)(-\d+)?$/.test(id)) each("energy", () => summary.energy.scale / 3);
     else problems.push(`plot ${id}: no scale is known for it`);
   };
   const impulses = (points) => all(points, (point) => largest(point.impacts ?? []));

@@ -338,10 +338,11 @@ const plots = (() => {
       + panel.series.map((series) => {
         const [from, to] = [indexAt(series.t, view[0]), indexAt(series.t, view[1]) + 1];
         const faint = whole ? "" : `<path class="curve faint" style="${stroke(series)}" d="${curve(series, 0, series.t.length)}"/>`;
-        // Of hundreds of turns the first are strong; zoomed in, all that is in view.
-        const strong = whole ? Math.min(to, series.strong ?? to) : to;
-        const pale = strong < to ? `<path class="curve faint" style="${stroke(series)}" d="${curve(series, Math.max(from, strong - 1), to)}"/>` : "";
-        return `${faint}${pale}<path class="curve" style="${stroke(series)}" d="${curve(series, from, strong)}"/>`;
+        // Of hundreds of turns a few are strong; zoomed in, all that is in view.
+        const [first, last] = whole ? series.strong ?? [from, to] : [from, to];
+        const pale = [[from, first + 1], [last - 1, to]].filter(([a, b]) => b - a > 1 && b - a < to - from)
+          .map(([a, b]) => `<path class="curve faint" style="${stroke(series)}" d="${curve(series, a, b)}"/>`).join("");
+        return `${faint}${pale}<path class="curve" style="${stroke(series)}" d="${curve(series, first, last)}"/>`;
       }).join("");
     panel.dots = panel.series.map((series) => svgElement("circle", { r: 4.5, style: `fill: ${colour(series.index)}` }, panel.svg));
     panel.place = (series, t) => [x(valueAt({ t: series.t, y: series.x }, t)), y(valueAt(series, t))];

@@ -145,9 +145,11 @@ impl Plots<'_> {
             Series::line(label, points).number(line.number)
         };
         // What is pale stays behind.
-        let pale = portrait.lines.iter().filter(|line| line.strong < line.t.len());
-        let pale = pale.map(|line| part(line, "", line.strong.saturating_sub(1)..line.t.len()).faint());
-        let strong = portrait.lines.iter().map(|line| part(line, &line.label, 0..line.strong));
+        let pale = portrait.lines.iter().flat_map(|line| {
+            let [before, after] = [0..line.strong.start + 1, line.strong.end.saturating_sub(1)..line.t.len()];
+            [before, after].into_iter().filter(|points| points.len() > 1).map(|points| part(line, "", points).faint())
+        });
+        let strong = portrait.lines.iter().map(|line| part(line, &line.label, line.strong.clone()));
         let lines: Vec<Series> = pale.chain(strong).collect();
         let x = lines.iter().flat_map(Series::points).map(|point| point.0);
         let x = Axis::around(format!("{} ({})", portrait.x_label, portrait.x_unit), x, portrait.least[0]);

@@ -7,6 +7,7 @@ use super::means;
 use super::recorder::{NUMBERS, PageRecorder};
 use super::redundant::{Redundant, redundant};
 use super::scenery::ContactDrawn;
+use std::ops::Range;
 
 mod energies;
 mod forces;
@@ -124,8 +125,8 @@ pub(crate) struct PortraitLine {
     pub(crate) t: Vec<f64>,
     pub(crate) x: Vec<f64>,
     pub(crate) v: Vec<f64>,
-    /// How many of its points are drawn strong; the later ones are pale.
-    pub(crate) strong: usize,
+    /// Which of its points are drawn strong; the others are pale.
+    pub(crate) strong: Range<usize>,
 }
 
 /// All that is drawn over time of a run, but contact forces, and what isn't.

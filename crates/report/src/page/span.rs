@@ -106,14 +106,16 @@ pub(super) fn shapes(recorder: &PageRecorder, units: &Units, id: &str) -> Option
             let part = |k: usize| k as f64 / (w.len() - 1).max(1) as f64;
             w.iter().enumerate().map(|(k, w)| beam.off_line(part(k), *w, [*left, *right])).collect()
         };
-        let sizes: Vec<f64> = rows.iter().map(|(_, row)| largest(&bent(row))).collect();
-        let most = largest(&sizes);
+        // By its largest deflection, with the sign of that.
+        let farthest = |w: &[f64]| w.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
+        let peaks: Vec<f64> = rows.iter().map(|(_, row)| farthest(&bent(row))).collect();
+        let most = largest(&peaks);
         if !holds(most, 1e-3 * beam.span) || panels.len() == BEAMS {
             continue;
         }
         let (name, factor) = units.unit(Measure::Deflection, most);
         let lines =
-            chosen(&rows.iter().map(|row| row.0).collect::<Vec<_>>(), &sizes, run).into_iter().map(|(k, word)| {
+            chosen(&rows.iter().map(|row| row.0).collect::<Vec<_>>(), &peaks, run).into_iter().map(|(k, word)| {
                 let (t, row) = rows[k];
                 let word = if apart { word.replace("largest", "near the largest") } else { word.to_owned() };
                 let word = if word.is_empty() { String::new() } else { format!("{word}, ") };
@@ -158,9 +160,10 @@ fn smooth(w: &[f64]) -> Vec<(f64, f64)> {
     points
 }
 
-/// Pictures that are worth a shape, in order of time, with what they are: the start, the largest deflection, further peaks, the
-/// end.
-fn chosen(times: &[f64], sizes: &[f64], run: f64) -> Vec<(usize, &'static str)> {
+/// Pictures that are worth a shape, in order of time, with what they are: the start, the largest deflection, the largest one to the other side, further
+/// peaks, the end.
+fn chosen(times: &[f64], peaks: &[f64], run: f64) -> Vec<(usize, &'static str)> {
+    let sizes: Vec<f64> = peaks.iter().map(|w| w.abs()).collect();
     let last = sizes.len() - 1;
     let most = sizes.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(k, _)| k);
     let mut chosen: Vec<(usize, &'static str)> = vec![(0, "start")];
@@ -172,11 +175,19 @@ fn chosen(times: &[f64], sizes: &[f64], run: f64) -> Vec<(usize, &'static str)> 
     } else {
         chosen.push((most, "largest"));
     }
-    let mut peaks: Vec<usize> = (1..last).filter(|&k| sizes[k] > sizes[k - 1] && sizes[k] >= sizes[k + 1]).collect();
-    peaks.retain(|k| sizes[*k] > TELLING * sizes[most]);
-    peaks.sort_by(|a, b| sizes[*b].total_cmp(&sizes[*a]));
     let mut more = 0;
-    for k in peaks {
+    // A beam that swings up as far as down has a shape of each.
+    let other_side = |k: &usize| peaks[*k] * peaks[most] < 0.0 && sizes[*k] > TELLING * sizes[most];
+    if let Some(k) = (0..=last).filter(other_side).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]))
+        && chosen.iter().all(|(other, _)| *other != k)
+    {
+        chosen.push((k, if peaks[k] > 0.0 { "largest upwards" } else { "largest downwards" }));
+        more += 1;
+    }
+    let mut further: Vec<usize> = (1..last).filter(|&k| sizes[k] > sizes[k - 1] && sizes[k] >= sizes[k + 1]).collect();
+    further.retain(|k| sizes[*k] > TELLING * sizes[most]);
+    further.sort_by(|a, b| sizes[*b].total_cmp(&sizes[*a]));
+    for k in further {
         if more < PEAKS && chosen.iter().all(|(other, _)| (times[*other] - times[k]).abs() > APART * run) {
             chosen.push((k, ""));
             more += 1;
@@ -209,5 +220,9 @@ mod tests {
         assert_eq!(words, ["start", "largest", "", "", "end"]);
         assert_eq!(chosen[1].0, 5, "the first maximum of a decaying swing, at t = π/0.6");
         assert_eq!(super::chosen(&[0.0], &[1.0], 0.0), [(0, "start and largest")]);
+        // Down at first, and up close to that.
+        let swing: Vec<f64> = times.iter().map(|t| -(-t / 6.0).exp() * t.sin()).collect();
+        let chosen = super::chosen(&times, &swing, 100.0);
+        assert!(chosen.contains(&(1, "largest")) && chosen.contains(&(5, "largest upwards")), "{chosen:?}");
     }
 }

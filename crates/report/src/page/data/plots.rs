@@ -136,9 +136,9 @@ pub(super) struct PortraitData {
 struct PortraitSeries {
     label: String,
     index: usize,
-    /// How many points are drawn strong, if not all.
+    /// The first point that is drawn strong and the first behind them, if not all are.
     #[serde(skip_serializing_if = "Option::is_none")]
-    strong: Option<usize>,
+    strong: Option<[usize; 2]>,
     t: Column,
     x: Column,
     y: Column,
@@ -232,7 +232,7 @@ pub(super) fn portraits(panels: &Panels) -> Vec<PortraitData> {
             .map(|line| {
                 let [x, y] = [&line.x, &line.v].map(|values| Column::of(values, SEEN));
                 let t = Column::of(&line.t, SEEN_BELOW_PEAKS);
-                let strong = Some(line.strong).filter(|strong| *strong < line.t.len());
+                let strong = Some([line.strong.start, line.strong.end]).filter(|_| line.strong.len() < line.t.len());
                 PortraitSeries { label: line.label.clone(), index: line.number, strong, t, x, y }
             })
             .collect(),

@@ -35,8 +35,8 @@ impl Panels {
                     self.leave_out(what, Some((name.to_owned(), "")), largest(&values), "J");
                 }
             }
-            // Energies turn into each other, but a work that is small beside another would be a line at zero.
-            let groups = if id == "works" { by_size(drawn) } else { vec![drawn] };
+            // What is small beside another would be a line at zero. Energies turn into each other, and belong together as long as they are seen.
+            let groups = by_size(drawn, if id == "works" { SMALL } else { SMALL_ENERGY });
             for (number, drawn) in groups.into_iter().filter(|group| !group.is_empty()).enumerate() {
                 let id = if number > 0 { format!("{id}-{}", number + 1) } else { id.to_owned() };
                 let title = if number > 0 { format!("{title}, smaller parts") } else { title.to_owned() };
@@ -72,15 +72,18 @@ type Drawn = (usize, String, usize, Vec<f64>);
 /// A work smaller than this part of another has a plot of its own.
 const SMALL: f64 = 0.03;
 
-/// In groups, largest first, in each of which the smallest is seen beside the largest.
-fn by_size(mut left: Vec<Drawn>) -> Vec<Vec<Drawn>> {
+/// And an energy smaller than this part.
+const SMALL_ENERGY: f64 = 0.005;
+
+/// In groups, largest first, in each of which the smallest is at least the part `small` of the largest.
+fn by_size(mut left: Vec<Drawn>, small: f64) -> Vec<Vec<Drawn>> {
     let size = |drawn: &Drawn| largest(&drawn.3);
     let mut groups = Vec::new();
     while !left.is_empty() {
         let most = left.iter().map(size).fold(0.0, f64::max);
-        let (seen, small) = left.into_iter().partition(|drawn| size(drawn) >= SMALL * most);
+        let (seen, unseen) = left.into_iter().partition(|drawn| size(drawn) >= small * most);
         groups.push(seen);
-        left = small;
+        left = unseen;
     }
     groups
 }
@@ -104,7 +107,7 @@ mod tests {
         let works = [("contact", -0.4), ("friction", -2.0), ("viscous", -3e-3), ("external", 150.0)];
         let drawn = works.iter().enumerate().map(|(k, (name, y))| (k, (*name).to_owned(), k, vec![0.0, *y])).collect();
         let names: Vec<Vec<String>> =
-            by_size(drawn).into_iter().map(|group| group.into_iter().map(|drawn| drawn.1).collect()).collect();
+            by_size(drawn, SMALL).into_iter().map(|group| group.into_iter().map(|drawn| drawn.1).collect()).collect();
         assert_eq!(names, [vec!["external"], vec!["contact", "friction"], vec!["viscous"]]);
     }
 }

@@ -8,6 +8,7 @@ use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, BLOCK_FRAME, PageR
 use crate::page::scenery::FREE;
 use crate::{shortest, with_digits};
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 /// A coordinate of a block.
 struct Coordinate {
@@ -343,9 +344,12 @@ impl Panels {
                 y_unit: format!("{}/s", units[1]),
                 least: if c == PHI { [4e-5 * factors[0], 2e-3] } else { factors.map(|factor| 1e-4 * reach * factor) },
                 guides,
-                note: (orbits.iter().any(|(_, points)| strong(points) < points.len())).then(|| {
-                    format!("strong: the first {} changes of sign of the velocity; pale: all later ones", STRONG)
-                }),
+                note: orbits.iter().map(|(_, points)| (strong(points), points.len())).find(|(strong, all)| strong.len() < *all).map(
+                    |(strong, _)| match strong.start {
+                        0 => format!("strong: the first {STRONG} changes of sign of the velocity; pale: all later ones"),
+                        _ => format!("strong: the {STRONG} changes of sign of the velocity about the largest swing; pale: all others"),
+                    },
+                ),
                 lines: orbits.into_iter().map(line).collect(),
             };
             self.portraits.push(portrait);
@@ -360,7 +364,8 @@ const UNSEEN: f64 = 5e-3;
 fn unseen(bodies: impl Iterator<Item = (String, f64)>, size: impl Fn(f64) -> String) -> Option<String> {
     let bodies: Vec<(String, f64)> = bodies.collect();
     let most = bodies.iter().fold(0.0, |most: f64, (_, far)| most.max(*far));
-    let small = bodies.iter().filter(|(_, far)| *far < UNSEEN * most);
+    // What is 0, or rounding beside the others, is seen as it is.
+    let small = bodies.iter().filter(|(_, far)| (ROUNDING * most..UNSEEN * most).contains(far) && *far > 0.0);
     let told: Vec<String> = small.map(|(name, far)| format!("{name} (up to {})", size(*far))).collect();
     (!told.is_empty()).then(|| format!("too small to be seen here: {}", told.join(", ")))
 }
@@ -369,10 +374,19 @@ fn unseen(bodies: impl Iterator<Item = (String, f64)>, size: impl Fn(f64) -> Str
 const MANY_TURNS: usize = 120;
 const STRONG: usize = 20;
 
-/// How many points of an orbit are drawn strong.
-fn strong(points: &[Point]) -> usize {
-    let turns = || points.windows(2).enumerate().filter(|(_, two)| two[0][2] * two[1][2] < 0.0).map(|(k, _)| k + 1);
-    if turns().count() <= MANY_TURNS { points.len() } else { turns().nth(STRONG).unwrap_or(points.len()) }
+/// Which points of an orbit are drawn strong: of many turns those about its point farthest from where it ends, which are the first of a motion that
+/// decays. The first of one that is shaken are hidden behind its strong ones.
+fn strong(points: &[Point]) -> Range<usize> {
+    let turns = points.windows(2).enumerate().filter(|(_, two)| two[0][2] * two[1][2] < 0.0).map(|(k, _)| k + 1);
+    let turns: Vec<usize> = turns.collect();
+    let Some(end) = points.last().filter(|_| turns.len() > MANY_TURNS) else { return 0..points.len() };
+    let far = |k: usize| (points[k][1] - end[1]).abs();
+    let farthest = (0..points.len()).max_by(|a, b| far(*a).total_cmp(&far(*b)).then(b.cmp(a))).unwrap_or(0);
+    let about = turns.partition_point(|turn| *turn < farthest);
+    match about.saturating_sub(STRONG / 2) {
+        from if about < STRONG || from == 0 => 0..turns[STRONG],
+        from => turns[from]..turns.get(from + STRONG).copied().unwrap_or(points.len()),
+    }
 }
 
 /// Where no block goes farther than this part of the range in which all of them are, they are drawn from their starts.
@@ -427,8 +441,28 @@ mod tests {
             (0..4 * count).map(|k| [k as f64, 1.0, [1.0, 0.3, -0.3, -1.0][k % 4]]).collect()
         };
         // Each bounce turns twice: at its top, and at the ground.
-        assert_eq!(strong(&bounces(291)), 42);
-        assert_eq!(strong(&bounces(12)), 48);
-        assert_eq!(strong(&[]), 0);
+        assert_eq!(strong(&bounces(291)), 0..42);
+        assert_eq!(strong(&bounces(12)), 0..48);
+        assert_eq!(strong(&[]), 0..0);
+    }
+
+    #[test]
+    fn of_many_swings_those_about_the_largest_are_strong() {
+        let swing = |k: usize| (1.0 - (k as f64 / 500.0 - 0.6).abs()) * (0.5 * std::f64::consts::PI * k as f64).cos();
+        let points: Vec<Point> = (0..1000).map(|k| [k as f64, swing(k), swing(k + 1)]).collect();
+        let strong = strong(&points);
+        assert!(strong.contains(&300) && strong.len() < 100, "{strong:?}");
+        let turns = points[strong].windows(2).filter(|two| two[0][2] * two[1][2] < 0.0).count();
+        assert!(turns <= STRONG, "{turns}");
+    }
+
+    #[test]
+    fn what_is_nothing_is_not_told_as_too_small_to_be_seen() {
+        let told = |far: [f64; 3]| {
+            unseen(far.into_iter().zip(["a", "b", "c"]).map(|(far, name)| (name.to_owned(), far)), |x| x.to_string())
+        };
+        assert_eq!(told([1.0, 0.0, 1e-17]), None);
+        assert_eq!(told([1.0, 0.0, 1e-3]).unwrap(), "too small to be seen here: c (up to 0.001)");
+        assert_eq!(told([0.0; 3]), None);
     }
 }

@@ -56,6 +56,9 @@ const WITHIN: f64 = 1e4;
 /// Numbers below this are small for an axis.
 const SMALL: f64 = 0.1;
 
+/// Numbers of lengths as large as this are in no smaller unit than would suit them alone: a deflection of 2 mm isn't one of 2000 µm.
+const LARGE_LENGTH: f64 = 1e3;
+
 /// Numbers of a length as large as this are in a larger unit than the scene's.
 const LARGE: f64 = 1e4;
 
@@ -83,6 +86,10 @@ impl Units {
             return alone;
         }
         let for_least = self.alone(measure, least);
+        if measure.is_length() {
+            // Small ones have a unit of their own then: the large ones are what the scene is about.
+            return if most * for_least.1 < LARGE_LENGTH { for_least } else { alone };
+        }
         if most * for_least.1 < LARGE { for_least } else { self.alone(measure, (most * least).sqrt()) }
     }
 
@@ -224,6 +231,8 @@ mod tests {
         assert_eq!(of(&[(Force, 14.0), (Force, 2e-4)]), ["", "µ"], "more than 10⁴ apart");
         assert_eq!(of(&[(Deflection, 3e-3), (Deflection, 0.13)]), ["cm", "cm"]);
         assert_eq!(of(&[(Deflection, 9e-4), (Deflection, 0.13)]), ["mm", "mm"]);
+        assert_eq!(of(&[(Deflection, 6e-7), (Deflection, 2.4e-3)]), ["µm", "mm"], "not 2400 µm");
+        assert_eq!(of(&[(Deflection, 3e-5), (Deflection, 2.4e-3)]), ["mm", "mm"]);
         assert_eq!(of(&[(Position, 2e-3), (Position, 0.45), (Deflection, 2e-3)]), ["cm", "cm", "mm"]);
         // What was not among those that chose.
         let units = Units::of(LengthUnit::Metre, &[(Force, 5e3), (Force, 300.0)]);
