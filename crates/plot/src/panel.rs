@@ -484,6 +484,11 @@ fn draw_bands(svg: &mut String, frame: &Frame, theme: Theme, bands: &[Band]) {
             if !(a.is_finite() && b >= a) {
                 continue;
             }
+            // The axis may show a part of them.
+            let (a, b) = (a.max(LEFT), b.min(LEFT + frame.width()));
+            if b < a {
+                continue;
+            }
             let _ = writeln!(
                 svg,
                 "<rect x=\"{a:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"10\" fill=\"{}\"/>",

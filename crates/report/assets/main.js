@@ -2,8 +2,6 @@
 
 (() => {
   const several = scenery.blocks.length > 1;
-  /** The curves of what moves. */
-  const motions = [];
   if (crowd) addCrowd();
   addPanels(false);
 
@@ -15,7 +13,6 @@
         const known = new Map(otherAt.map((after, k) => [picture += after, others[k]]));
         return { label, index, y, raw, t: atBorders ? forces.borders : curves.t, known };
       });
-      if (!late) motions.push(...series);
       plots.add({
         id: panel.id, contact: panel.contact, title: panel.title, unit: panel.unit, series, guides: panel.guides, least: panel.least,
         cut: panel.cut ? cutOf(series, panel.least) : undefined, height: late ? 160 : 170,
@@ -225,23 +222,29 @@
     }
   }
 
-  // Speeds that show the whole in 2 s to 200 s; at first in about 10 s.
-  const length = end - start;
-  for (const power of [-6, -5, -4, -3, -2, -1, 0, 1, 2, 3, 4, 5]) {
-    for (const digit of [1, 2, 5]) {
-      const value = digit * 10 ** power;
-      if (length / value < 2 || length / value > 200) continue;
-      const name = value < 1 ? `1/${Number((1 / value).toPrecision(3))}` : String(value);
-      speed.append(new Option(`${name} ×`, value));
+  // Speeds that show the whole in 2 s to 200 s, or what moves of it; at first in about 10 s.
+  /** Where the animation begins, and how long of the run it is about. */
+  let opening = { t: start, lasts: end - start };
+  function chooseSpeed() {
+    const length = opening.lasts;
+    speed.replaceChildren();
+    for (const power of [-6, -5, -4, -3, -2, -1, 0, 1, 2, 3, 4, 5]) {
+      for (const digit of [1, 2, 5]) {
+        const value = digit * 10 ** power;
+        if (length / value < 2 || length / value > 200) continue;
+        const name = value < 1 ? `1/${Number((1 / value).toPrecision(3))}` : String(value);
+        speed.append(new Option(`${name} ×`, value));
+      }
     }
+    if (!speed.options.length) speed.append(new Option("1 ×", 1));
+    speed.value = [...speed.options].map((option) => option.value)
+      .reduce((best, value) => (Math.abs(Math.log(length / value / 10)) < Math.abs(Math.log(length / best / 10)) ? value : best));
   }
-  if (!speed.options.length) speed.append(new Option("1 ×", 1));
-  speed.value = [...speed.options].map((option) => option.value)
-    .reduce((best, value) => (Math.abs(Math.log(length / value / 10)) < Math.abs(Math.log(length / best / 10)) ? value : best));
+  chooseSpeed();
   const factor = () => Number(speed.value);
 
   function setPlaying(on) {
-    clock = on ? { wall: performance.now(), t: frame >= times.length - 1 ? start : times[frame] } : null;
+    clock = on ? { wall: performance.now(), t: frame >= times.length - 1 ? opening.t : times[frame] } : null;
     play.textContent = on ? "Pause" : "Play";
     play.setAttribute("aria-label", play.textContent);
     if (on) requestAnimationFrame(tick);
@@ -425,31 +428,16 @@
     if (wanted.has("t") && Number.isFinite(Number(wanted.get("t")))) seek(Number(wanted.get("t")));
   }
 
-  /** When anything goes through the middle 98 % of its range for the first and the last time: before and after that all curves are flat. */
-  function motion() {
-    let [first, last] = [Infinity, -Infinity];
-    for (const { t, y } of motions) {
-      const values = y.map((x) => x ?? NaN);
-      const [low, high] = values.reduce(([a, b], x) => (Number.isFinite(x) ? [Math.min(a, x), Math.max(b, x)] : [a, b]), [Infinity, -Infinity]);
-      const [begin, final] = [values.find(Number.isFinite), values[values.length - 1]];
-      if (!(high > low) || !Number.isFinite(final)) continue;
-      const moved = (x, from) => Math.abs(x - from) > 0.01 * (high - low);
-      const leaves = values.findIndex((x) => moved(x, begin));
-      let comes = values.length - 1;
-      while (comes > 0 && !moved(values[comes], final)) comes -= 1;
-      first = Math.min(first, t[Math.max(0, leaves - 1)] ?? Infinity);
-      last = Math.max(last, t[Math.min(t.length - 1, comes + 1)]);
-    }
-    return [first, last];
-  }
-
   /** Where all moves within a small part of the run, the plots open on that. */
   function openOnMotion() {
-    const [first, last] = motion();
-    if (!(last > first) || last - first > 0.2 * (end - start)) return;
+    if (!data.moving) return;
+    const [first, last] = data.moving;
     const room = 0.25 * (last - first);
     const [from, to] = [Math.max(start, first - room), Math.min(end, last + room)];
     plots.zoom(from, to);
+    opening = { t: times[frameAt(from)], lasts: to - from };
+    chooseSpeed();
+    show(frameAt(from));
     const say = (t) => `${Number((t * timeUnit[1]).toPrecision(3))} ${timeUnit[0]}`;
     const when = first - start < 1e-3 * (end - start) ? `after ${say(last)}` : `before ${say(first)} or after ${say(last)}`;
     const note = htmlElement("p", "note", `Hardly anything moves ${when}: the plots open on what does. `);
@@ -457,6 +445,7 @@
     const whole = htmlElement("button", "link", "Show all times", note);
     whole.type = "button";
     whole.addEventListener("click", () => plots.zoom(start, end));
+    if (curves.thinned) note.append(`. The curves have the lowest and the highest value of every ${forces.bucket}, not more, however far one zooms in.`);
     byId("plots").prepend(note);
   }
 

@@ -18,6 +18,7 @@ mod frames;
 mod html;
 mod means;
 mod network;
+mod opening;
 mod orbit;
 mod outline;
 mod packed;

@@ -7,6 +7,7 @@ mod network;
 mod pictures;
 mod plots;
 
+use super::opening;
 use super::panels::Panels;
 use super::recorder::PageRecorder;
 use super::scenery::Scenery;
@@ -29,6 +30,9 @@ struct Data<'a> {
     crowd: Option<CrowdData>,
     #[serde(skip_serializing_if = "Option::is_none")]
     network: Option<NetworkData>,
+    /// When anything moves, if that is a small part of the run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    moving: Option<[f64; 2]>,
     loads: Vec<LoadData>,
     forces: ForceData,
     impacts: Vec<ImpactData>,
@@ -63,6 +67,7 @@ pub(crate) fn json(recorder: &PageRecorder, panels: &Panels, summary: &Summary) 
             .has_network()
             .then(|| network::network(recorder))
             .filter(|network| !network.pairs.is_empty()),
+        moving: opening::moving(panels).map(|ends| ends.map(time)),
         loads: pictures::loads(recorder),
         forces: plots::forces(recorder, panels),
         impacts: impacts::impacts(recorder),

@@ -8,7 +8,7 @@ use super::curves::{Does, ForceCurve};
 use super::drawings;
 use super::panels::{Panels, Place, Portrait, PortraitLine, TimePanel, cut_at, prefix, time_unit};
 use super::recorder::{MANY_IMPACTS, PageRecorder};
-use super::{means, span};
+use super::{means, opening, span};
 use crate::{shortest, with_digits};
 use teeter_plot::{Axis, Band, Colour, Figure, Legend, Panel, Series};
 
@@ -101,8 +101,11 @@ impl Plots<'_> {
     fn over_time(&self, id: &str, title: &str, panels: Vec<Panel>) -> Figure {
         let (start, end) = (self.t[0], self.t[self.t.len() - 1]);
         let end = if end > start { end } else { start + 1.0 };
-        let (unit, factor) = time_unit(end - start);
-        let x = Axis::between(format!("Time t ({unit})"), start, end).shown_in(factor);
+        let [from, to] = opening::shown(self.panels).unwrap_or([start, end]);
+        let part =
+            if to - from < end - start { format!(", of a run to {}", with_digits(end, "s", 6)) } else { String::new() };
+        let (unit, factor) = time_unit(to - from);
+        let x = Axis::between(format!("Time t ({unit}){part}"), from, to).shown_in(factor);
         panels.into_iter().fold(Figure::new(id, title, x), Figure::panel)
     }
 

@@ -255,3 +255,16 @@ fn what_tumbles_has_no_half_cycles_and_a_run_too_short_says_so() {
         "`cube` has not been upright yet, too short a run to tell how it rocks: φ 5° at t = 1 ms, largest 5° at t = 0 s"
     );
 }
+
+#[test]
+fn figures_and_page_of_a_long_run_open_where_something_moves() {
+    let text = "[time]\nend = '20 s'\nstep = '1 ms'\n[ground]\n[signal.kick]\nshape = 'half-sine'\nstart = '8 s'\nduration = '1 s'\n\
+        [force.push]\non = 'box'\nforce = ['85 N', '0 N']\nsignal = 'kick'\n[block.box]\ndensity = '800 kg/m^3'\nwidth = '20 cm'\n\
+        height = '40 cm'\ndepth = '20 cm'\non = 'ground'\nat = '0 m'\n[contact.base]\nbetween = ['box', 'ground']\nfriction = 0.4\n";
+    let run = run("long-wait", text);
+    let ends = numbers(&data(&run.html)["moving"]);
+    assert!((8.0..8.5).contains(&ends[0]) && (9.0..9.5).contains(&ends[1]), "{ends:?}");
+    let svg = figure(&figures(&run.page), "x.svg");
+    assert!(svg.contains("Time t (s), of a run to 20 s") && svg.contains(">9.0<") && !svg.contains(">15<"), "{svg}");
+    assert!(data(&scenario("sliding").html)["moving"].is_null(), "it moves for most of the run");
+}
