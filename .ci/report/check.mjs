@@ -43,6 +43,9 @@ async function anyPage(page, problem) {
   const cut = await page.$$eval(".fit, #records .scroll, #reactions .scroll", (all) => all.filter((one) => one.scrollWidth > one.clientWidth)
     .map((one) => one.querySelector("tr").textContent.trim()));
   cut.forEach((text) => problem(`numbers of a table are out of view: ${text}`));
+  const wide = await page.$$eval("#tiles dd", (all) => all.filter((one) => one.scrollWidth > one.clientWidth || one.getClientRects().length > 1
+    || one.offsetHeight > 1.9 * parseFloat(getComputedStyle(one).fontSize)).map((one) => one.textContent));
+  wide.forEach((text) => problem(`a number doesn't fit the line of its tile: ${text}`));
   const sideways = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
   if (sideways > 0) problem(`scrolls sideways by ${sideways} px`);
 }

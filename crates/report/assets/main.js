@@ -154,6 +154,11 @@
   }
 
   addPanels(true);
+  if (document.querySelector("#plots .key b")) {
+    const note = htmlElement("p", "note", "Numbers beside names: values at the time of the picture, or under the pointer.");
+    note.id = "readouts";
+    byId("plots").prepend(note);
+  }
   if (active.length > 3) {
     const hardest = strongestContacts(1)[0];
     byId("choice").querySelector("select").value = hardest;

@@ -24,7 +24,9 @@ const chains = (() => {
   const typical = sizes[Math.floor(sizes.length / 2)];
   let shown = { picture: -1, links: [] };
 
-  function linksAt(picture) {
+  /** The links of a picture; at the start, before any step, those of the first steps. */
+  function linksAt(at) {
+    const picture = Math.max(at, Math.min(1, times.length - 1));
     if (shown.picture !== picture) shown = { picture, links: linksOf(picture) };
     return shown.links;
   }

@@ -177,7 +177,12 @@ fn warnings(summary: &Summary) -> String {
                     <h2 id=\"warnings-title\">Warnings</h2>\n<ul>\n"
         .to_owned();
     for warning in &summary.warnings {
-        let count = if warning.count > 1 { format!(" <b>({} times)</b>", warning.count) } else { String::new() };
+        // Some texts tell how often.
+        let count = if warning.count > 1 && warning.code != crate::UNLOCATED {
+            format!(" <b>({} times)</b>", warning.count)
+        } else {
+            String::new()
+        };
         let _ = writeln!(
             html,
             "<li data-warning=\"{}\"><span>{}</span>{count}</li>",

@@ -110,7 +110,8 @@ pub(super) fn rocking(cycles: &[HalfCycle], recorder: &PageRecorder, dt: f64) ->
     } else {
         ""
     });
-    html.push_str("Passages between two peaks below a thousandth of the critical angle are left out. ");
+    html.push_str("Next peak / previous has a dash after a previous peak of less than a hundredth of the critical angle, and where one of the two isn’t known. \
+        Passages between two peaks below a thousandth of the critical angle are left out. ");
     html.push_str(if on_blocks {
         ""
     } else if hits && !scenery.driven.is_empty() {

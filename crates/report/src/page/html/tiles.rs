@@ -37,7 +37,7 @@ impl Numbers {
     }
 
     /// The paths of all single values that no tile shows, nor would if they had a meaning for the scene.
-    fn others(&self, summary: &Summary) -> Vec<String> {
+    fn others(&self) -> Vec<String> {
         fn walk(value: &Value, path: &str, out: &mut Vec<String>) {
             match value {
                 Value::Object(map) => {
@@ -53,9 +53,6 @@ impl Numbers {
         let mut paths = Vec::new();
         walk(&self.0, "", &mut paths);
         paths.retain(|path| {
-            if path == "reclosure_count" && stood_still(summary) {
-                return true;
-            }
             let elsewhere = [&TILES[..], &CLOCKED, &HEADED].iter().any(|paths| paths.contains(&path.as_str()));
             !elsewhere && !path.starts_with("model.")
         });
@@ -64,7 +61,7 @@ impl Numbers {
 }
 
 /// What users want to know first: the numbers of the mechanics, then from [`NUMERIC`] on those of the computation.
-const TILES: [&str; 14] = [
+const TILES: [&str; 13] = [
     "deflections.0.w",
     "max_phi_over_alpha",
     "overturned_at",
@@ -72,7 +69,6 @@ const TILES: [&str; 14] = [
     "energy.dissipated",
     "impact_count",
     "horizon",
-    "reclosure_count",
     "max_penetration",
     "energy.lost_by_scheme",
     "energy.largest_residual",
@@ -81,16 +77,8 @@ const TILES: [&str; 14] = [
     "contact.max_iterations",
 ];
 
-/// What contacts are called that a step or chatter lost for a moment.
-const RECLOSURES: &str = "Contacts lost and found again";
-
 /// The first tile that is of the computation.
 const NUMERIC: usize = 7;
-
-/// Whether all blocks stood still throughout: that contacts were lost and found again is then rounding, and no number of the motion.
-fn stood_still(summary: &Summary) -> bool {
-    !summary.verdict.is_empty() && summary.rests_from == Some(0.0)
-}
 
 /// A number with as many digits as the headline gives it.
 fn as_told(x: f64, unit: &str) -> String {
@@ -144,16 +132,17 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, units: &Units) -> Strin
     let rocks = summary.overturned_at.is_none();
     // Without contacts their numbers would all be 0.
     let touches = !summary.model.contacts.is_empty() || summary.contact.max_contacts > 0;
-    let of_contacts = ["impact_count", "reclosure_count", "max_penetration"];
+    let of_contacts = ["impact_count", "max_penetration"];
     for (number, path) in TILES.into_iter().enumerate() {
         if !touches && (of_contacts.contains(&path) || path.starts_with("contact.")) {
             continue;
         }
         let (label, shown) = match path {
             "deflections.0.w" => ("Largest deflection", summary.deflections.first().map(|of| as_told(of.w, "m"))),
-            "max_phi_over_alpha" => {
-                ("Largest φ/α", summary.max_phi_over_alpha.filter(|_| rocks).and_then(share_of_critical_angle))
-            }
+            "max_phi_over_alpha" => (
+                if summary.verdict.len() > 1 { "Largest φ/α of a block" } else { "Largest φ/α" },
+                summary.max_phi_over_alpha.filter(|_| rocks).and_then(share_of_critical_angle),
+            ),
             "overturned_at" => ("First overturned at", seconds(summary.overturned_at)),
             "rests_from" => ("All at rest from", seconds(summary.rests_from)),
             "energy.dissipated" => ("Energy dissipated", Some(lost(summary.energy.dissipated, summary, units))),
@@ -164,9 +153,6 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, units: &Units) -> Strin
             }
             "impact_count" => (impacts.as_str(), Some(summary.impact_count.to_string())),
             "horizon" => ("Predictable up to", seconds(summary.horizon)),
-            "reclosure_count" => {
-                (RECLOSURES, Some(summary.reclosure_count.to_string()).filter(|_| !stood_still(summary)))
-            }
             // As the terminal has it.
             "max_penetration" => ("Deepest penetration", Some(with_prefix_of(summary.told_penetration(), 2, "m"))),
             "energy.largest_residual" => ("Energy residual", Some(scientific(summary.energy.largest_residual))),
@@ -196,14 +182,17 @@ fn in_one_line(shown: &str) -> String {
 
 /// What the values of the table are, in words. One that has none here goes by its path.
 const NAMES: [(&str, &str); 20] = [
-    ("reclosure_count", RECLOSURES),
+    ("reclosure_count", "Re-closures: contacts that opened for a moment, and closed again without an impact"),
     ("scheme", "Time scheme"),
     ("dt", "Step"),
     ("steps", "Steps"),
     ("t", "Time reached"),
     ("ended", "The run is"),
     ("contact.solver", "Contact solver"),
-    ("contact.max_contact_residual", "Largest residual of one contact, relative (near 1: its impulse is a guess)"),
+    (
+        "contact.max_contact_residual",
+        "Largest residual of a single contact, relative to its own impulse, which of one that hardly presses is rounding (near 1)",
+    ),
     ("contact.max_contacts", "Most contacts in a step"),
     ("energy.initial", "Energy at the start"),
     ("energy.final", "Energy at the end"),
@@ -220,7 +209,7 @@ const NAMES: [(&str, &str); 20] = [
 
 pub(super) fn numbers(values: &Numbers, summary: &Summary) -> String {
     let mut html = String::new();
-    for path in values.others(summary) {
+    for path in values.others() {
         let text = values.text(&path);
         // For people; the file, and `data-value`, have all digits.
         let shown = match (text.parse::<f64>(), unit_of(&path)) {
