@@ -18,7 +18,7 @@ use crate::{
 };
 use drift::Flights;
 use impact::Strike;
-use jump::NextJump;
+use jump::Rises;
 use locate::Hit;
 pub(crate) use locate::rate_at;
 use teeter_contact::Outcome;
@@ -41,7 +41,7 @@ impl Default for MoreauJeanLocatedSettings {
 /// What it can't step.
 const FOLLOWERS: &str = "matrices that follow their coordinates: what energy they keep depends on the size of the step";
 
-/// A step is divided at so many jumps of loads at most.
+/// A step is divided at so many jumps and ends of steep rises of loads at most.
 const MOST_JUMPS: usize = 4;
 
 /// Steps for which a contact with something elastic pressed lately.
@@ -124,9 +124,7 @@ pub struct MoreauJeanLocated<const D: usize> {
     /// they did, as the state's memory holds them.
     lately: Vec<f64>,
     flights: Flights,
-    next_jump: NextJump,
-    /// Loads on either side of a time; memory.
-    beside: [Vec<f64>; 2],
+    rises: Rises,
     /// Which subsystems are elastic, and whether any is.
     elastic: Vec<bool>,
     has_elastic: bool,
@@ -175,8 +173,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             stays: Vec::new(),
             lately: Vec::new(),
             flights: Flights::default(),
-            next_jump: NextJump::default(),
-            beside: [Vec::new(), Vec::new()],
+            rises: Rises::default(),
             elastic: Vec::new(),
             has_elastic: true,
             has_rigid_pairs: true,
@@ -228,8 +225,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         let numbers = 3 * contacts + Flights::NUMBERS * flights;
         self.lately.reserve(numbers);
         self.flights.reserve(flights, model.body_count());
-        self.next_jump = NextJump::default();
-        self.beside.iter_mut().for_each(|loads| loads.reserve(model.size().v));
+        self.rises.start(model);
         self.by_forces.resize(model.size().v, 0.0);
         self.in_lowest_bounce.reserve(contacts.min(crate::stage::RESERVED_CONTACTS));
         self.v.resize(model.size().v, 0.0);
@@ -359,8 +355,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 }
             }
             // Not one that rounding leaves at an end of what is left.
-            let is_within = |end: &f64| (end - from.t).min(span.end - end) > STEP_ROUNDING * span.h;
-            let jump = if jumps < MOST_JUMPS { self.find_jump(model, &rest, from.dt).filter(is_within) } else { None };
+            let margin = STEP_ROUNDING * span.h;
+            let jump = if jumps < MOST_JUMPS { self.find_jump(model, &rest, from.dt, margin) } else { None };
             let rest = jump.map_or(rest, |end| StepSpan { end, h: end - from.t, ..rest });
             if jump.is_some() {
                 self.step.begin(model, from, &rest, work)?;

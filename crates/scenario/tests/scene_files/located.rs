@@ -560,6 +560,41 @@ fn a_slide_that_a_jump_of_a_load_starts_begins_in_time() {
     }
 }
 
+/// A block that a force holds still, and that slides evenly accelerated after the force has risen to 4 N from `before` (N) in `lasting` (s),
+/// from 20.5 ms on; and where it is at 100 ms by the closed form.
+fn pushed_by_a_rise(before: f64, lasting: f64) -> (String, f64) {
+    const AT: f64 = 0.0205;
+    let limit = 0.3 * G;
+    let scene = format!(
+        "[time]\nend = '0.1 s'\n[ground]\n[block.b]\nmass = '1 kg'\ninertia = '0.1 kg m^2'\nwidth = '0.4 m'\nheight = '0.02 m'\n\
+         on = 'ground'\nat = '0 m'\n[contact.c]\nbetween = ['b', 'ground']\nfriction = 0.3\n\
+         [signal.s]\nshape = 'ramp'\nstart = '{AT} s'\nduration = '{lasting} s'\n\
+         [force.f]\non = 'b'\nforce = ['{} N', '0 N']\nsignal = 's'\n[force.g]\non = 'b'\nforce = ['{before} N', '0 N']\n",
+        4.0 - before
+    );
+    // The load passes the limit of friction on its way.
+    let (rate, late) = ((4.0 - before) / lasting, (4.0 - limit) / (4.0 - before) * lasting);
+    let left = 0.1 - AT - lasting;
+    let (speed, way) = (0.5 * rate * late * late, rate * late * late * late / 6.0);
+    (scene, way + speed * left + 0.5 * (4.0 - limit) * left * left)
+}
+
+/// A rise that is steeper than the steps is as good as a jump: what it lets slide does so in time. (What is left is that it may begin at the
+/// start of the rise, or at its end.)
+#[test]
+fn a_slide_that_a_steep_rise_of_a_load_starts_begins_in_time() {
+    for before in [0.4, -2.0] {
+        for lasting in [1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 4e-4] {
+            let (scene, exact) = pushed_by_a_rise(before, lasting);
+            for step in ["5 ms", "1 ms", "800 us"] {
+                let [x, ..] = pose(&run(&scene, step).0, "b");
+                let in_time = 0.5 * lasting / 0.08 + 1e-9;
+                assert!((x / exact - 1.0).abs() < in_time, "{before} N, {lasting} s, {step}: {x} {exact}");
+            }
+        }
+    }
+}
+
 /// A force along the ground that jumps between bounces changes none of them: how much of an approach is the work of forces in a step is
 /// told by the whole step, not by its part after the jump.
 #[test]
