@@ -4,7 +4,9 @@
 use crate::closed_step::THETA;
 use crate::projected_step::ProjectedStep;
 use crate::theta_step::ThetaStep;
-use crate::{Model, MoreauJeanClosedSettings, Scheme, SettingError, State, StepError, StepReport, Workspace};
+use crate::{
+    DriveMeans, Model, MoreauJeanClosedSettings, Scheme, SettingError, State, StepError, StepReport, Workspace,
+};
 
 /// The settings of [`MoreauJeanProjected`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,8 +71,8 @@ impl<const D: usize> Scheme<D> for MoreauJeanProjected<D> {
         Self::NAME
     }
 
-    fn drives_about(&self) -> Option<f64> {
-        Some(THETA)
+    fn drives_about(&self) -> Option<DriveMeans> {
+        Some(DriveMeans::over(THETA))
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {

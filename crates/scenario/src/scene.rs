@@ -20,6 +20,7 @@ use nalgebra::Vector2;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 use teeter_detect::{Polygon, Shape, ShapeError};
+use teeter_integrator::DriveMeans;
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
 /// A scene that can be run.
@@ -245,14 +246,15 @@ impl SchemeName {
         }
     }
 
-    /// The θ of the mean that gives prescribed velocities at the end of a step; `None` if they are
+    /// The means that prescribed velocities are at the end of a step; `None` if they are
     /// those at that time.
     #[must_use]
-    pub fn drives_about(self, theta: f64) -> Option<f64> {
+    pub fn drives_about(self, theta: f64) -> Option<DriveMeans> {
         match self {
-            Self::MoreauJean => Some(theta),
-            Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::Resolved => Some(0.5),
-            Self::MoreauJeanProjected | Self::GeneralizedAlpha => Some(0.5),
+            Self::MoreauJean => Some(DriveMeans::over(theta)),
+            Self::MoreauJeanLocated => Some(DriveMeans { theta: 0.5, is_sharp: true }),
+            Self::MoreauJeanClosed | Self::Resolved => Some(DriveMeans::over(0.5)),
+            Self::MoreauJeanProjected | Self::GeneralizedAlpha => Some(DriveMeans::over(0.5)),
             Self::EventDriven => None,
         }
     }

@@ -595,6 +595,99 @@ fn a_slide_that_a_steep_rise_of_a_load_starts_begins_in_time() {
     }
 }
 
+/// A block on ground that moves, with friction 0.3.
+fn on_ground_that_moves(motion: &str, more: &str) -> String {
+    format!(
+        "[time]\nend = '0.1 s'\n[ground]\nmotion = {{ {motion} }}\n[block.b]\nmass = '1 kg'\ninertia = '0.1 kg m^2'\n\
+         width = '0.4 m'\nheight = '0.02 m'\non = 'ground'\nat = '0 m'\n[contact.c]\nbetween = ['b', 'ground']\nfriction = 0.3\n{more}"
+    )
+}
+
+/// Where the acceleration of the ground jumps within a step, it is what it is before and after, and a block slides in time: evenly
+/// accelerated, then at rest on ground that moves on evenly. Both places are those of the closed form.
+#[test]
+fn a_slide_that_a_jump_of_the_ground_s_acceleration_starts_begins_in_time() {
+    let scene = on_ground_that_moves(
+        "acceleration = ['4 m/s^2', '0 m/s^2'], signal = 's'",
+        "[signal.s]\nshape = 'sum'\nterms = ['on', 'off']\n[signal.on]\nshape = 'constant'\nstart = '20.35 ms'\n\
+         [signal.off]\nshape = 'constant'\nscale = -1\nstart = '45.55 ms'\n",
+    );
+    let (lasting, left) = (0.0252, 0.1 - 0.02035);
+    let (speed, friction) = (4.0 * lasting, 0.3 * G);
+    let ground = speed * (left - 0.5 * lasting);
+    let block = speed * left - 0.5 * speed * speed / friction;
+    for step in ["5 ms", "1 ms", "800 us", "50 us"] {
+        let (simulation, seen) = run(&scene, step);
+        let [x, ..] = pose(&simulation, "b");
+        let moved = simulation.state.q[simulation.layout.ground.clone().unwrap().start];
+        assert!((moved - ground).abs() < 1e-14, "{step}: {moved} {ground}");
+        assert!((x - block).abs() < 1e-11, "{step}: {x} {block}");
+        assert!(seen.most_phases > 1, "{step}: no step is divided");
+    }
+}
+
+/// The same where it is the weight that falls: the ground sinks ever faster, and friction no longer holds against a force.
+#[test]
+fn a_slide_that_sinking_ground_starts_begins_in_time() {
+    let scene = on_ground_that_moves(
+        "acceleration = ['0 m/s^2', '-3 m/s^2'], signal = 's'",
+        "[signal.s]\nshape = 'constant'\nstart = '20.35 ms'\n[force.f]\non = 'b'\nforce = ['2.5 N', '0 N']\n",
+    );
+    let left = 0.1 - 0.02035;
+    let (slid, sunk) = (0.5 * (2.5 - 0.3 * (G - 3.0)) * left * left, 0.5 * 3.0 * left * left);
+    for step in ["5 ms", "1 ms", "800 us"] {
+        let [x, y, _] = pose(&run(&scene, step).0, "b");
+        assert!((x - slid).abs() < 1e-12 && (y - 0.01 + sunk).abs() < 1e-12, "{step}: {x} {slid} {y}");
+    }
+}
+
+/// And where the acceleration rises more steeply than the steps.
+#[test]
+fn a_slide_that_a_steep_rise_of_the_ground_s_acceleration_starts_begins_in_time() {
+    for lasting in [1e-9, 1e-6, 1e-5, 1e-4, 3e-4] {
+        let scene = on_ground_that_moves(
+            "acceleration = ['4 m/s^2', '0 m/s^2'], signal = 's'",
+            &format!("[signal.s]\nshape = 'ramp'\nstart = '20.35 ms'\nduration = '{lasting} s'\n"),
+        );
+        let (friction, rate) = (0.3 * G, 4.0 / lasting);
+        let sticks = friction / rate;
+        let (left, after) = (0.1 - 0.02035 - sticks, 0.1 - 0.02035 - lasting);
+        let block = rate * sticks.powi(3) / 6.0 + 0.5 * friction * (sticks * left + left * left);
+        let ground = rate * lasting.powi(3) / 6.0 + 0.5 * 4.0 * (lasting * after + after * after);
+        for step in ["5 ms", "1 ms", "800 us"] {
+            let (simulation, _) = run(&scene, step);
+            let [x, ..] = pose(&simulation, "b");
+            let moved = simulation.state.q[simulation.layout.ground.clone().unwrap().start];
+            // The trapezoidal rule is off by that over the rise, or over the part of the step up to the end of a short one.
+            let off = 0.1 * 4.0 * lasting * lasting + 5e-3 * lasting.min(5e-6) + 1e-14;
+            assert!((moved - ground).abs() < off, "{lasting} s, {step}: {moved} {ground}");
+            assert!((x / block - 1.0).abs() < 0.5 * lasting / 0.08 + 1e-9, "{lasting} s, {step}: {x} {block}");
+        }
+    }
+}
+
+/// Where the acceleration jumps that isn't even otherwise, the place is that of `event-driven`.
+#[test]
+fn a_slide_on_ground_that_a_chirp_shakes_is_the_same_by_events() {
+    let scene = on_ground_that_moves(
+        "acceleration = ['5 m/s^2', '0 m/s^2'], signal = 's'",
+        "[signal.s]\nshape = 'chirp'\nfrom = '8 Hz'\nto = '12 Hz'\nphase = '60 deg'\nstart = '20.137 ms'\nduration = '47.31 ms'\n",
+    );
+    let place = |scheme: &str, step: &str| {
+        let sets =
+            [("time.scheme", scheme), ("time.step", step)].map(|(key, value)| (key.to_owned(), format!("\"{value}\"")));
+        let resolved = teeter_scenario::load(scene.as_bytes(), "located", "located", &sets).unwrap();
+        let mut simulation = Simulation::new(&resolved.scene).unwrap();
+        assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+        pose(&simulation, "b")[0]
+    };
+    let exact = place("event-driven", "1 ms");
+    for (step, off) in [("1 ms", 1e-5), ("500 us", 5e-6), ("250 us", 3e-6), ("50 us", 1e-6)] {
+        let x = place("moreau-jean-located", step);
+        assert!((x / exact - 1.0).abs() < off, "{step}: {x} {exact}");
+    }
+}
+
 /// A force along the ground that jumps between bounces changes none of them: how much of an approach is the work of forces in a step is
 /// told by the whole step, not by its part after the jump.
 #[test]
