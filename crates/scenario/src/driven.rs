@@ -72,12 +72,12 @@ impl BeamModel {
         let beam = Beam::new(of.spec.clone()).map_err(|error| BuildError::Beam(of.name.clone(), error))?;
         let basis = of.reduction.map(|reduction| reduction.basis(&beam)).transpose();
         let basis = basis.map_err(|error| BuildError::Modes(of.name.clone(), error))?.map(Arc::new);
-        Ok(Self { beam: Arc::new(beam), basis, displaced: Vec::new(), shared: None })
+        Ok(Self { beam: Arc::new(beam), basis, displaced: displaced(of), shared: None })
     }
 
-    pub(crate) fn of_shared(shared: Arc<SharedBeam>) -> Self {
+    pub(crate) fn of_shared(shared: Arc<SharedBeam>, of: &BeamScene) -> Self {
         let (beam, basis) = (Arc::clone(shared.factors.beam()), shared.basis.clone());
-        Self { beam, basis, displaced: Vec::new(), shared: Some(shared) }
+        Self { beam, basis, displaced: displaced(of), shared: Some(shared) }
     }
 
     /// Whether its supports hold it: the error of a static solve without loads.
@@ -102,11 +102,16 @@ impl BeamModel {
 
     /// Without loads, its supports at rest at their initial displacement.
     pub(crate) fn still(&self, of: &BeamScene) -> Result<BeamSystem, BuildError> {
-        let surface = if of.top { BeamSurface::Top { offset: 0.5 * of.thickness } } else { BeamSurface::Axis };
         let mut position = Vector2::from(of.position);
         if let [x, y] = *self.displaced {
             position += Vector2::new(x, y);
         }
+        self.at(of, position)
+    }
+
+    /// Without loads, its supports at rest with the left end here.
+    fn at(&self, of: &BeamScene, position: Vector2<f64>) -> Result<BeamSystem, BuildError> {
+        let surface = if of.top { BeamSurface::Top { offset: 0.5 * of.thickness } } else { BeamSurface::Axis };
         let beam = Arc::clone(&self.beam);
         Ok(match &self.basis {
             None => {
@@ -123,16 +128,22 @@ impl BeamModel {
         })
     }
 
-    /// Under the loads of the scene, including its own weight if enabled.
+    /// The same under the loads of the scene, including its own weight if enabled.
     pub(crate) fn loaded(&self, scene: &Scene, number: usize) -> Result<BeamSystem, BuildError> {
-        let of = &scene.beams[number];
-        loaded(scene, number, &self.beam, self.still(of)?).map_err(|error| BuildError::Beam(of.name.clone(), error))
+        self.under_loads(scene, number, self.still(&scene.beams[number])?)
+    }
+
+    fn under_loads(&self, scene: &Scene, number: usize, body: BeamSystem) -> Result<BeamSystem, BuildError> {
+        let name = &scene.beams[number].name;
+        loaded(scene, number, &self.beam, body).map_err(|error| BuildError::Beam(name.clone(), error))
     }
 
     /// Under its loads, with supports that may move.
     pub(crate) fn body(&self, scene: &Scene, number: usize) -> Result<BeamSystem, BuildError> {
         let of = &scene.beams[number];
-        let body = match self.loaded(scene, number)? {
+        // Supports that move have their displacement as coordinates.
+        let undisplaced = self.at(of, Vector2::from(of.position))?;
+        let body = match self.under_loads(scene, number, undisplaced)? {
             BeamSystem::Full(body) => BeamSystem::Full(body.with_backend(of.backend)),
             modes => modes,
         };
@@ -162,13 +173,6 @@ impl BeamSystem {
         }
     }
 
-    pub(crate) fn displacements(&self, t: f64) -> Vec<f64> {
-        match self {
-            Self::Full(body) => body.displacements(t),
-            Self::Modes(body) => body.displacements(t),
-        }
-    }
-
     fn with_weight(self, gravity: Vector2<f64>) -> Self {
         match self {
             Self::Full(body) => Self::Full(body.with_weight(gravity)),
@@ -189,6 +193,12 @@ impl BeamSystem {
             Self::Modes(body) => Self::Modes(body.with_signal_load(load)),
         }
     }
+}
+
+/// Initial displacements x and y of the supports of a beam; empty if they don't move.
+fn displaced(of: &BeamScene) -> Vec<f64> {
+    let [x, y, _] = of.motion.motions();
+    if of.motion.is_given() { vec![x.displacement(0.0), y.displacement(0.0)] } else { Vec::new() }
 }
 
 /// A beam with the loads of the scene, including its own weight if enabled.

@@ -159,7 +159,7 @@ fn surface_height(
 }
 
 /// The initial configurations (X, Y, φ) of all blocks: on beams with these deflections, on ground
-/// along the given line, on each other. Moving supports count as not displaced.
+/// along the given line, on each other. Supports are displaced as at the start.
 pub(crate) fn starting_poses(
     scene: &Scene,
     beams: &[BeamModel],

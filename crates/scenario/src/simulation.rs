@@ -380,14 +380,14 @@ fn block_bodies(scene: &Scene) -> Result<Vec<BlockBody>, BuildError> {
 /// The beams, with the initial displacements of their supports.
 fn beam_models(scene: &Scene, shared: Option<&SharedParts>) -> Result<Vec<BeamModel>, BuildError> {
     let model = |(number, of): (usize, &BeamScene)| {
-        let mut model = match shared {
-            Some(shared) => BeamModel::of_shared(shared.beam(of)?),
+        let model = match shared {
+            Some(shared) => BeamModel::of_shared(shared.beam(of)?, of),
             None => BeamModel::new(of)?,
         };
-        // The supports of other beams stand still, and their loads and modes can't be refused, as they have none.
+        // What else may be refused of a beam: its loads, in modes, and its motion.
         let has_loads = scene.loads.iter().any(|load| load.beam == number);
         if of.motion.is_given() || of.reduction.is_some() || has_loads {
-            model.displaced = model.body(scene, number)?.displacements(0.0);
+            model.body(scene, number)?;
         }
         Ok(model)
     };

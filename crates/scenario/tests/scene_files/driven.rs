@@ -275,6 +275,51 @@ fn a_block_on_a_beam_whose_supports_move_evenly_moves_with_them() {
     assert!(still.state.q[2] < 4.9_f64.to_radians(), "it has moved");
 }
 
+/// Blocks are placed on a beam as it is at t = 0: with supports that start displaced all is as far from where it is without, and stays as
+/// near to each other.
+#[test]
+fn blocks_start_on_a_beam_whose_supports_start_displaced() {
+    let scene = |more: &str, motion: &str| {
+        let text = format!(
+            "[time]\nend = '20 ms'\nstep = '200 us'\n{}on = 't'\nat = '12 cm'\n\
+             [block.c]\nmaterial = 'm'\nwidth = '3 cm'\nheight = '2 cm'\ndepth = '3 cm'\non = 'b'\nat = '12 cm'\n\
+             [block.d]\nmaterial = 'm'\nwidth = '3 cm'\nheight = '5 cm'\ndepth = '3 cm'\non = 't'\nat = '25 cm'\ntilt = '3 deg'\n\
+             [beam.t]\nmaterial = 'm'\nspan = '36 cm'\nwidth = '3 cm'\nthickness = '3 mm'\nelements = 10\n{more}\n{motion}\n\
+             [contact.c]\nbetween = ['*', 't']\nfriction = 0.5\n[contact.e]\nbetween = ['b', 'c']\nfriction = 0.5\n",
+            BLOCK.replace("width = '10 cm'", "width = '3 cm'").replace("depth = '10 cm'", "depth = '3 cm'")
+        );
+        Simulation::new(&resolved(&text).scene).unwrap()
+    };
+    for more in ["", "start = 'static'", "start = 'static'\nsurface = 'top'", "start = 'static'\nmodel = 'modes'"] {
+        let still = scene(more, "");
+        for up in [1.0, -1.0, 30.0] {
+            let motion = format!(
+                "motion = {{ displacement = ['0 mm', '{up} mm'], signal = 's' }}\n[signal.s]\nshape = 'harmonic'\nfrequency = '2 Hz'\nphase = '90 deg'"
+            );
+            let mut moved = scene(more, &motion);
+            let n = still.state.q.len();
+            for (k, (moved, still)) in moved.state.q.iter().zip(&still.state.q).enumerate() {
+                let shift = if k < 9 && k % 3 == 1 { 1e-3 * up } else { 0.0 };
+                assert!((moved - shift - still).abs() < 1e-11, "{more}, {up} mm: coordinate {k}: {moved} {still}");
+            }
+            assert!((moved.state.q[n + 1] - 1e-3 * up).abs() < 1e-17 && moved.state.q[n] == 0.0);
+            let touching = |simulation: &Simulation| {
+                let mut found = Vec::new();
+                simulation.model.candidates(&simulation.state.q, 1e-10, &mut found).unwrap();
+                found.len()
+            };
+            assert_eq!(touching(&moved), touching(&still), "{more}, {up} mm");
+            assert_eq!(moved.run(&mut []).unwrap(), Ended::Complete);
+        }
+        // To the side the middle of the base is still where it was said to be, on a straight beam at the same height.
+        let aside = scene("", "motion = { displacement = ['20 mm', '0 mm'] }");
+        let straight = scene("", "");
+        for k in 0..9 {
+            assert!((aside.state.q[k] - straight.state.q[k]).abs() < 1e-15, "coordinate {k}");
+        }
+    }
+}
+
 #[test]
 fn compliant_contact_carries_the_weight_at_its_static_depth() {
     for (law, depth) in [
