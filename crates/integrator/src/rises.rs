@@ -99,7 +99,8 @@ impl Rises {
         self.found.clear();
         self.found.reserve(MOST_RISES);
         self.step = 0.0;
-        self.values.iter_mut().for_each(|values| values.reserve(model.size().v));
+        let largest = that_may_rise(model).map(|(_, part)| part.v.len()).max().unwrap_or(0);
+        self.values.iter_mut().for_each(|values| values.reserve(largest));
     }
 
     /// Looks at the breaks about a time from `rest.start` to `rest.end`, in steps of this size (s).
@@ -116,17 +117,16 @@ impl Rises {
         }
         let late = rest.end + 0.5 * step;
         let mut left = (MOST_BREAKS * ((late - self.until) / step).ceil().max(1.0)) as usize;
-        let parts = || model.parts().iter().enumerate().filter(|(_, part)| part.traits.loaded || part.is_driven());
         while self.until <= late {
             if left == 0 {
                 (self.until, self.at_break) = (late, false);
                 return;
             }
             left -= 1;
-            let breaks = parts().map(|(_, part)| part.system.next_break(self.until));
+            let breaks = that_may_rise(model).map(|(_, part)| part.system.next_break(self.until));
             let (begin, end) = (self.until, breaks.fold(f64::INFINITY, f64::min));
             let is_short = self.at_break && end - begin <= LONGEST_RISE * step;
-            for (index, part) in parts() {
+            for (index, part) in that_may_rise(model) {
                 if is_short {
                     self.enter_rises(index, part, [begin, end], step);
                 }
@@ -267,6 +267,11 @@ impl Rises {
             }
         }
     }
+}
+
+/// The parts of which something may rise.
+fn that_may_rise<const D: usize>(model: &Model<D>) -> impl Iterator<Item = (usize, &Part<D>)> {
+    model.parts().iter().enumerate().filter(|(_, part)| part.traits.loaded || part.is_driven())
 }
 
 /// What rounding makes of a time, s.
