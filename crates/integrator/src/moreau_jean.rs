@@ -78,7 +78,7 @@ impl<const D: usize> Scheme<D> for MoreauJean<D> {
     }
 
     fn drives_about(&self) -> Option<DriveMeans> {
-        Some(DriveMeans::over(self.settings.theta))
+        Some(DriveMeans::Over { theta: self.settings.theta })
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {

@@ -85,7 +85,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
     }
 
     fn drives_about(&self) -> Option<DriveMeans> {
-        Some(DriveMeans::over(crate::closed_step::THETA))
+        Some(DriveMeans::Over { theta: crate::closed_step::THETA })
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {

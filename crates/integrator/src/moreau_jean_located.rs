@@ -190,7 +190,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
     }
 
     fn drives_about(&self) -> Option<DriveMeans> {
-        Some(DriveMeans { theta: THETA, is_sharp: true })
+        Some(DriveMeans::Sharp)
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
@@ -352,8 +352,8 @@ impl<const D: usize> MoreauJeanLocated<D> {
                     *by_forces = (free - v0) * whole;
                 }
             }
-            // What sticks with the mean of a load, or of the ground's acceleration, may slide with what that is after a jump. Not a jump that
-            // rounding leaves at an end of what is left.
+            // What sticks with the mean of a load, or of the ground's acceleration, may slide with what that is after a jump.
+            // A jump that rounding leaves at an end of what is left is none within it.
             let margin = STEP_ROUNDING * span.h;
             let jump = if jumps < MOST_JUMPS { self.step.step.rises.first_within(&rest, margin) } else { None };
             let rest = jump.map_or(rest, |end| StepSpan { end, h: end - from.t, ..rest });

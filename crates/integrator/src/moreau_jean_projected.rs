@@ -72,7 +72,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanProjected<D> {
     }
 
     fn drives_about(&self) -> Option<DriveMeans> {
-        Some(DriveMeans::over(THETA))
+        Some(DriveMeans::Over { theta: THETA })
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {

@@ -5,8 +5,9 @@ use crate::{Model, Part, StepSpan};
 /// A load jumps where it changes by more than this part of its size, also a step before and after: the rest is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Breaks that are looked at in the length of a step. A table with more rows than that in a step isn't followed by its steps anyway.
-const MOST_BREAKS: f64 = 64.0;
+/// Breaks that are looked at in a step, as counted from t = 0. A table with more rows than that in a step isn't followed by its steps
+/// anyway.
+const MOST_BREAKS: u32 = 64;
 
 /// A rise that lasts longer than this part of a step is slow: the mean of the step misses little of it.
 const LONGEST_RISE: f64 = 0.5;
@@ -25,8 +26,8 @@ const JUMP: f64 = 2.0;
 /// What changes by less than this part of its size isn't looked at, nor the last digit of a table.
 const NOTABLE: f64 = 1e-2;
 
-/// So many rises are held about a step; further ones are not looked at.
-const MOST_RISES: usize = 32;
+/// Room for so many rises is reserved at the start.
+const USUAL_RISES: usize = 32;
 
 /// What may rise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,10 +39,20 @@ enum Kind {
 /// A time in which a load or a prescribed acceleration of a part changes at once, s; of a jump both ends are the same.
 #[derive(Clone, Copy, Debug)]
 struct Rise {
-    part: usize,
-    kind: Kind,
     begin: f64,
     end: f64,
+    /// The acceleration, if it is none of loads.
+    of: Option<Acceleration>,
+}
+
+/// A prescribed acceleration that rises.
+#[derive(Clone, Copy, Debug)]
+struct Acceleration {
+    part: usize,
+    /// Among the part's velocities.
+    component: usize,
+    /// m/s² or rad/s².
+    by: f64,
 }
 
 impl Rise {
@@ -85,6 +96,8 @@ pub(crate) struct Rises {
     until: f64,
     /// Whether there is a break there.
     at_break: bool,
+    /// Breaks in the step before that.
+    breaks: u32,
     /// What may rise, before, after, and at another time; and its size; memory.
     values: [Vec<f64>; 4],
 }
@@ -97,7 +110,7 @@ impl Rises {
     /// Forgets all, and takes memory for a model.
     pub(crate) fn start<const D: usize>(&mut self, model: &Model<D>) {
         self.found.clear();
-        self.found.reserve(MOST_RISES);
+        self.found.reserve(USUAL_RISES);
         self.step = 0.0;
         let largest = that_may_rise(model).map(|(_, part)| part.v.len()).max().unwrap_or(0);
         self.values.iter_mut().for_each(|values| values.reserve(largest));
@@ -109,22 +122,24 @@ impl Rises {
         let early = rest.start - 1.5 * step;
         if !(self.step == step && self.from <= early && self.until > rest.start) {
             self.found.clear();
-            (self.step, self.from, self.until, self.at_break) = (step, early, early, false);
+            // From a whole step on, so that as many breaks are looked at wherever a run begins.
+            let from = (early / step).floor() * step;
+            (self.step, self.from, self.until, self.at_break, self.breaks) = (step, from, from, false, 0);
         }
         if self.found.first().is_some_and(|rise| rise.end < early) {
             self.found.retain(|rise| rise.end >= early);
             self.from = early;
         }
         let late = rest.end + 0.5 * step;
-        let mut left = (MOST_BREAKS * ((late - self.until) / step).ceil().max(1.0)) as usize;
         while self.until <= late {
-            if left == 0 {
-                (self.until, self.at_break) = (late, false);
-                return;
+            let in_step = (self.until / step).floor();
+            if self.breaks == MOST_BREAKS {
+                (self.until, self.at_break, self.breaks) = ((in_step + 1.0) * step, false, 0);
+                continue;
             }
-            left -= 1;
             let breaks = that_may_rise(model).map(|(_, part)| part.system.next_break(self.until));
             let (begin, end) = (self.until, breaks.fold(f64::INFINITY, f64::min));
+            self.breaks = if (end / step).floor() == in_step { self.breaks + 1 } else { 0 };
             let is_short = self.at_break && end - begin <= LONGEST_RISE * step;
             for (index, part) in that_may_rise(model) {
                 if is_short {
@@ -140,16 +155,23 @@ impl Rises {
 
     /// Enters what of a part jumps, or rises steeply, there.
     fn enter_rises<const D: usize>(&mut self, index: usize, part: &Part<D>, [begin, end]: [f64; 2], step: f64) {
-        let kinds = [(Kind::Load, part.traits.loaded), (Kind::Acceleration, part.is_driven())];
-        for (kind, _) in kinds.into_iter().filter(|(_, has)| *has) {
-            let rise = Rise { part: index, kind, begin, end };
-            let rises = match kind {
-                Kind::Load if begin == end => self.load_jumps(part, end, step),
-                _ => self.is_steep(part, &rise, step),
+        let rise = Rise { begin, end, of: None };
+        if part.traits.loaded {
+            let rises = match begin == end {
+                true => self.load_jumps(part, end, step),
+                false => self.is_steep(part, Kind::Load, &rise, step),
             };
-            if rises && self.found.len() < MOST_RISES {
+            if rises {
                 self.found.push(rise);
             }
+        }
+        if part.is_driven() && self.is_steep(part, Kind::Acceleration, &rise, step) {
+            let [before, after, ..] = &self.values;
+            let rising = part.traits.driven.iter().filter(|k| after[**k] != before[**k]);
+            self.found.extend(rising.map(|&component| {
+                let by = after[component] - before[component];
+                Rise { of: Some(Acceleration { part: index, component, by }), ..rise }
+            }));
         }
     }
 
@@ -179,9 +201,10 @@ impl Rises {
         before.iter().zip(after).any(|(before, after)| (after - before).abs() > ROUNDING * size)
     }
 
-    /// Whether something rises, or falls, by a notable part of its size, and more than beside that time.
-    fn is_steep<const D: usize>(&mut self, part: &Part<D>, rise: &Rise, step: f64) -> bool {
-        let Rise { kind, begin, end, .. } = *rise;
+    /// Whether something rises, or falls, by a notable part of its size, and more than beside that time. Leaves before and after of those
+    /// components; the others are equal there.
+    fn is_steep<const D: usize>(&mut self, part: &Part<D>, kind: Kind, rise: &Rise, step: f64) -> bool {
+        let Rise { begin, end, .. } = *rise;
         let [before, after] = rise.sides();
         if !self.take(BEFORE, part, kind, before) || !self.take(AFTER, part, kind, after) {
             return false;
@@ -202,9 +225,9 @@ impl Rises {
             size.iter_mut().zip(beside).for_each(|(size, beside)| *size = size.max(beside.abs()));
         }
         let mut any = self.keep_those_that_rise(is_notable);
-        let (steepness, away) = match end - begin {
-            0.0 => (JUMP, [0.5 * step, step, step]),
-            lasts => (STEEPNESS, [lasts, 2.0 * lasts, 4.0 * lasts]),
+        let (steepness, away): (_, &[f64]) = match end - begin {
+            0.0 => (JUMP, &[0.5 * step, step]),
+            lasts => (STEEPNESS, &[lasts, 2.0 * lasts, 4.0 * lasts]),
         };
         for away in away {
             if any {
@@ -251,19 +274,12 @@ impl Rises {
 
     /// Takes from the mean prescribed velocities of a part over the step about `t` (s) what they know of rises that are not yet, or no
     /// longer, at `t`: as far as accelerations jump, the velocities are those of `t`.
-    pub(crate) fn sharpen<const D: usize>(&mut self, index: usize, part: &Part<D>, t: f64, v: &mut [f64]) {
+    pub(crate) fn sharpen(&self, index: usize, t: f64, v: &mut [f64]) {
         let step = self.step;
-        for at in 0..self.found.len() {
-            let rise = self.found[at];
-            let is_near = t - 0.5 * step < rise.end && rise.begin < t + 0.5 * step;
-            if rise.kind == Kind::Acceleration && rise.part == index && is_near {
-                let [before, after] = rise.sides();
-                self.take(BEFORE, part, rise.kind, before);
-                self.take(AFTER, part, rise.kind, after);
-                let smear = rise.smear(t, step);
-                for &k in &part.traits.driven {
-                    v[k] -= (self.values[AFTER][k] - self.values[BEFORE][k]) * smear;
-                }
+        let is_near = |rise: &&Rise| t - 0.5 * step < rise.end && rise.begin < t + 0.5 * step;
+        for rise in self.found.iter().filter(is_near) {
+            if let Some(of) = rise.of.filter(|of| of.part == index) {
+                v[of.component] -= of.by * rise.smear(t, step);
             }
         }
     }
@@ -274,7 +290,7 @@ fn that_may_rise<const D: usize>(model: &Model<D>) -> impl Iterator<Item = (usiz
     model.parts().iter().enumerate().filter(|(_, part)| part.traits.loaded || part.is_driven())
 }
 
-/// What rounding makes of a time, s.
+/// What rounding makes of a time, s; nothing at t = 0, where a run begins with what is there.
 fn nudge(t: f64) -> f64 {
     8.0 * f64::EPSILON * t.abs()
 }
@@ -286,7 +302,7 @@ mod tests {
     #[test]
     fn the_smear_of_a_rise_is_that_of_the_mean_of_its_velocity() {
         for (begin, end) in [(0.3, 0.3), (0.3, 0.37), (0.3, 0.3 + 1e-6)] {
-            let rise = Rise { part: 0, kind: Kind::Acceleration, begin, end };
+            let rise = Rise { begin, end, of: None };
             let velocity = |t: f64| match t {
                 t if t < begin => 0.0,
                 t if t < end => 0.5 * (t - begin).powi(2) / (end - begin),

@@ -201,20 +201,16 @@ pub const STEP_ROUNDING: f64 = 1e-9;
 
 /// Which means a scheme takes for prescribed velocities at the end of a step (`docs/signals.md`).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DriveMeans {
-    /// The mean is that from θ steps before the end to 1 − θ after it, 0 to 1.
-    pub theta: f64,
-    /// Whether jumps of the acceleration are left out of it, as of a scheme that divides its steps there: the velocity that such a jump
-    /// starts is then that of the time itself. Only with θ = ½.
-    pub is_sharp: bool,
-}
-
-impl DriveMeans {
-    /// The plain means.
-    #[must_use]
-    pub fn over(theta: f64) -> Self {
-        Self { theta, is_sharp: false }
-    }
+#[non_exhaustive]
+pub enum DriveMeans {
+    /// The mean from θ steps before the end to 1 − θ after it.
+    Over {
+        /// θ, 0 to 1.
+        theta: f64,
+    },
+    /// That of θ = ½ without the jumps of the acceleration, of a scheme that divides its steps there: the velocity that such a jump starts is
+    /// then that of the time itself.
+    Sharp,
 }
 
 /// Start, end and size of a step.
@@ -317,13 +313,16 @@ impl State {
             return Err(StateError::Length { what: "the velocities", found, expected });
         }
         let Self { t, dt, .. } = *self;
-        let DriveMeans { theta, is_sharp } = means;
+        let (theta, is_sharp) = match means {
+            DriveMeans::Over { theta } => (theta, false),
+            DriveMeans::Sharp => (0.5, true),
+        };
         model.drive_mean_at([t - theta * dt, t + (1.0 - theta) * dt], &mut self.v);
         if is_sharp && model.is_driven() {
             let mut rises = Rises::default();
             rises.look_at(model, &StepSpan { start: t, end: t, h: 0.0 }, dt);
             for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| part.is_driven()) {
-                rises.sharpen(index, part, t, &mut self.v[part.v.clone()]);
+                rises.sharpen(index, t, &mut self.v[part.v.clone()]);
             }
         }
         Ok(())

@@ -217,7 +217,7 @@ impl ThetaStep {
             // short one would jump from it, and push with what the jump takes.
             let dt = state.dt;
             part.system.drive_mean([span.end - theta * dt, span.end + (1.0 - theta) * dt], v_end);
-            self.rises.sharpen(index, part, span.end, v_end);
+            self.rises.sharpen(index, span.end, v_end);
             let (jump, pull) = (scratch, &mut self.product[v]);
             for ((jump, v1), v0) in jump.iter_mut().zip(v_end.iter()).zip(v_start) {
                 *jump = v1 - v0;

@@ -197,8 +197,7 @@ impl BeamSystem {
 
 /// Initial displacements x and y of the supports of a beam; empty if they don't move.
 fn displaced(of: &BeamScene) -> Vec<f64> {
-    let [x, y, _] = of.motion.motions();
-    if of.motion.is_given() { vec![x.displacement(0.0), y.displacement(0.0)] } else { Vec::new() }
+    if of.motion.is_given() { of.start_displacement().to_vec() } else { Vec::new() }
 }
 
 /// A beam with the loads of the scene, including its own weight if enabled.

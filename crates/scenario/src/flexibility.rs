@@ -157,7 +157,7 @@ fn loaded_points(scene: &Scene, number: usize) -> Vec<LoadedPoints> {
         let middle = match block.placement {
             Placement::On { at, .. } => at,
             Placement::Free { position, .. } => position[0],
-        } - of.position[0];
+        } - of.start_position()[0];
         let feet = [middle - 0.5 * block.width, middle + 0.5 * block.width];
         let at: Vec<f64> = feet.into_iter().filter(on).collect();
         if !at.is_empty() {

@@ -101,7 +101,7 @@ impl Sagging {
         if !beam.self_weight {
             standing.peek()?;
         }
-        let standing = standing.flatten().map(|(x, force)| (x - beam.position[0], force)).collect();
+        let standing = standing.flatten().map(|(x, force)| (x - beam.start_position()[0], force)).collect();
         let own_weight = beam.self_weight.then_some(scene.gravity[1]);
         Some(Self { spec: beam.spec.clone(), reduction: beam.reduction, own_weight, standing })
     }

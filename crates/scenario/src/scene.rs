@@ -251,10 +251,10 @@ impl SchemeName {
     #[must_use]
     pub fn drives_about(self, theta: f64) -> Option<DriveMeans> {
         match self {
-            Self::MoreauJean => Some(DriveMeans::over(theta)),
-            Self::MoreauJeanLocated => Some(DriveMeans { theta: 0.5, is_sharp: true }),
-            Self::MoreauJeanClosed | Self::Resolved => Some(DriveMeans::over(0.5)),
-            Self::MoreauJeanProjected | Self::GeneralizedAlpha => Some(DriveMeans::over(0.5)),
+            Self::MoreauJean => Some(DriveMeans::Over { theta }),
+            Self::MoreauJeanLocated => Some(DriveMeans::Sharp),
+            Self::MoreauJeanClosed | Self::Resolved => Some(DriveMeans::Over { theta: 0.5 }),
+            Self::MoreauJeanProjected | Self::GeneralizedAlpha => Some(DriveMeans::Over { theta: 0.5 }),
             Self::EventDriven => None,
         }
     }
@@ -533,6 +533,20 @@ impl BeamScene {
     #[must_use]
     pub fn is_sheared(&self) -> bool {
         self.spec.section.shear_stiffness.is_finite()
+    }
+
+    /// The displacement of its supports at the start, x and y, m.
+    #[must_use]
+    pub fn start_displacement(&self) -> [f64; 2] {
+        let [x, y, _] = self.motion.motions();
+        [x.displacement(0.0), y.displacement(0.0)]
+    }
+
+    /// Position of its left end at the start, its supports displaced, m.
+    #[must_use]
+    pub fn start_position(&self) -> [f64; 2] {
+        let ([x, y], [right, up]) = (self.position, self.start_displacement());
+        [x + right, y + up]
     }
 }
 

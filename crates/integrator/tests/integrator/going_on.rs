@@ -70,7 +70,7 @@ fn prescribed_velocities_go_on_as_means_about_the_time() {
     let mut short = State::new(&model, &[0.0, 0.025, 0.0, 0.0, 0.0, 0.0], &[0.0; 6], 1e-3).unwrap();
     short.v.pop();
     assert!(matches!(
-        short.drive_about(&model, DriveMeans::over(0.5)),
+        short.drive_about(&model, DriveMeans::Over { theta: 0.5 }),
         Err(StateError::Length { found: 5, expected: 6, .. })
     ));
 }

@@ -502,7 +502,7 @@ impl Resolver<'_, '_> {
         };
         let path = |key: &str| format!("block.{name}.{key}");
         let Some(Some(beam)) = beams.get(number) else { return };
-        let (left, span, width) = (beam.position[0], beam.spec.span, block.base());
+        let (left, span, width) = (beam.start_position()[0], beam.spec.span, block.base());
         if width > span {
             let rule = format!("the block is {width} m wide, but the span of `{}` is {span} m", beam.name);
             let key = if block.parts.is_none() { path("width") } else { path("at") };

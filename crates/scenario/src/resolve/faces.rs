@@ -68,9 +68,8 @@ impl Resolver<'_, '_> {
             };
             let Some([x, y]) = centre else { continue };
             let (of, block) = (&scene.beams[beam], &scene.blocks[contact.block]);
-            let [right, up, _] = of.motion.motions().map(|motion| motion.displacement(0.0));
-            let is_below = y < of.position[1] + up;
-            let left = of.position[0] + right;
+            let [left, axis] = of.start_position();
+            let is_below = y < axis;
             let over = (left..=left + of.spec.span).contains(&x);
             // One that is not convex can hang on it.
             let is_convex = block.parts.as_ref().is_none_or(|parts| parts.len() == 1);

@@ -275,6 +275,25 @@ fn a_block_on_a_beam_whose_supports_move_evenly_moves_with_them() {
     assert!(still.state.q[2] < 4.9_f64.to_radians(), "it has moved");
 }
 
+/// Where a block can stand on a beam is where that is at t = 0.
+#[test]
+fn a_displaced_beam_carries_where_it_is() {
+    let scene = |at: &str| {
+        let block = BLOCK.replace("width = '10 cm'", "width = '3 cm'").replace("depth = '10 cm'", "depth = '3 cm'");
+        let text = format!(
+            "[time]\nend = '2 ms'\nstep = '200 us'\n{block}on = 't'\nat = '{at}'\n\
+             [beam.t]\nmaterial = 'm'\nspan = '36 cm'\nwidth = '3 cm'\nthickness = '3 mm'\nelements = 10\n\
+             motion = {{ displacement = ['20 cm', '0 mm'] }}\n[contact.c]\nbetween = ['b', 't']\nfriction = 0.5\n"
+        );
+        load(text.as_bytes(), "scene.toml", "scene", &[])
+    };
+    let mut simulation = Simulation::new(&scene("45 cm").unwrap().scene).unwrap();
+    assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+    assert!((simulation.state.q[0] - 0.45).abs() < 1e-6, "{}", simulation.state.q[0]);
+    let refused = scene("5 cm").unwrap_err().to_string();
+    assert!(refused.contains("extends from 0.2 m to 0.56 m"), "{refused}");
+}
+
 /// Blocks are placed on a beam as it is at t = 0: with supports that start displaced all is as far from where it is without, and stays as
 /// near to each other.
 #[test]

@@ -166,7 +166,10 @@ fn align_without(
     let mut alternatives = list(sign, &fit.as_good);
     if let Some((sign, _, other)) = other.filter(|(.., other)| other.tells_side && other.is_as_good_as(&fit)) {
         alternatives.extend(list(sign, &[other.fit]));
-        alternatives.extend(list(sign, &other.as_good));
+        // Those that fit as well as the best of their side are known; here they are held against the better side.
+        let as_good: Vec<ShiftFit> =
+            other.as_good.iter().filter(|found| found.is_as_good_as(&fit.fit)).copied().collect();
+        alternatives.extend(list(sign, &as_good));
     }
     alternatives.sort_by_key(|found| std::cmp::Reverse(found.rows));
     let alignment = Alignment {
@@ -361,8 +364,10 @@ impl<'a> Search<'a> {
         let mut fine: Vec<ShiftFit> = worth.map(|fit| refined(fit.shift, 4.0 * ROUGH * reach, FINE)).collect();
         let Some(best) = least(&fine) else { return (ShiftFit::NONE, Vec::new()) };
         fine.retain(|fit| fit.is_as_good_as(&best));
-        let most = fine.iter().copied().max_by_key(|fit| fit.rows).filter(|most| most.explains_more_than(&best));
-        let best = most.unwrap_or(best);
+        // The best of those that have about the most rows.
+        let whole: Vec<ShiftFit> =
+            fine.iter().filter(|fit| !fine.iter().any(|other| other.explains_more_than(fit))).copied().collect();
+        let best = least(&whole).unwrap_or(best);
         // One that was found from two sides is the same.
         let mut different: Vec<ShiftFit> = vec![best];
         for fit in fine {
@@ -518,6 +523,14 @@ mod tests {
         let aligned = align(&measured, &trace, 4.0, 0.0, AlignmentSettings::default());
         let whole = |shift: f64| (0.0..=1.505).contains(&shift);
         assert!(whole(aligned.alignment.shift), "{:?}", aligned.alignment);
+        // Of those that have all rows it is the best.
+        for found in
+            aligned.alternatives.iter().filter(|found| whole(found.shift) && found.sign == aligned.alignment.sign)
+        {
+            let given = AlignmentSettings { shift: Some(found.shift), sign: Some(found.sign) };
+            let mismatch = align(&measured, &trace, 4.0, 0.0, given).alignment.mismatch;
+            assert!(mismatch >= aligned.alignment.mismatch, "{found:?}: {mismatch}");
+        }
         // A period is 0.5 s, and half of one seen from behind.
         let steps = |shift: f64, sign: Sign| (shift - 1.3 + if sign == Sign::AsIs { 0.0 } else { 0.25 }) / 0.5;
         for found in &aligned.alternatives {

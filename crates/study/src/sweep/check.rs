@@ -54,8 +54,8 @@ impl Sweep {
         if wrong.has_errors() { Err(wrong) } else { Ok(()) }
     }
 
-    /// Refuses a scene that no case can be run with, whatever its values: cases all over the study, the first and the last among them, are
-    /// refused for the same errors of its text.
+    /// Refuses a scene that can't be run whatever the values: of up to 16 cases all over the study, the first and the last among them, each
+    /// is refused for the same errors of its text.
     ///
     /// # Errors
     /// These errors; their places are in the scene file.

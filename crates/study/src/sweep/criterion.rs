@@ -6,6 +6,9 @@ use super::spec::{Node, Reader, entries};
 /// The place in the summary that tells whether a block overturned.
 const OVERTURNED_AT: &str = "overturned_at";
 
+/// Lists of a summary whose items are events: a run that hasn't got one has had no such event.
+const EVENTS: [&str; 3] = ["impacts", "peaks", "crossings"];
+
 /// A yes or no about a case that ran.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Criterion {
@@ -112,8 +115,8 @@ impl Criterion {
         outputs.iter().find(ours).map(Output::name)
     }
 
-    /// Whether it holds, by the cell of its column among these outputs; `None` where the cell doesn't say. What the summary of a run
-    /// hasn't got, such as a second impact, is above nothing; the value of a column at a time that the run didn't reach isn't known.
+    /// Whether it holds, by the cell of its column among these outputs; `None` where the cell doesn't say. An impact, a peak or a crossing
+    /// that a run hasn't got is above nothing; of all else that is missing, as when a block came to rest that still moves, nothing is known.
     pub(crate) fn holds(&self, cell: &str, outputs: &[Output]) -> Option<bool> {
         match self {
             Self::Overturned => Some(!cell.is_empty()),
@@ -124,13 +127,16 @@ impl Criterion {
         }
     }
 
-    /// Whether the cell is that of a run whose summary hasn't got the output.
+    /// Whether the cell is that of a run that hasn't got so many impacts, peaks or crossings.
     pub(crate) fn is_absent(&self, cell: &str, outputs: &[Output]) -> bool {
         let Self::Above { output: name, .. } = self else { return false };
-        cell.is_empty() && outputs.iter().any(|output| output.name() == name && output.summary_path().is_some())
+        let of_event =
+            |path: &str| EVENTS.iter().any(|list| path.strip_prefix(list).is_some_and(|rest| rest.starts_with('.')));
+        cell.is_empty()
+            && outputs.iter().any(|output| output.name() == name && output.summary_path().is_some_and(of_event))
     }
 
-    /// Of how many cases the summary hasn't got the output, as a sentence; none where all have.
+    /// How many cases haven't got the event of the output, as a sentence; none where all have.
     pub(crate) fn absent(&self, cells: &[&str], outputs: &[Output]) -> Option<String> {
         let Self::Above { output, .. } = self else { return None };
         let absent = cells.iter().filter(|cell| self.is_absent(cell, outputs)).count();
