@@ -10,6 +10,7 @@ use teeter_study::compare::{
     CompareSettings, Comparison, FILES, MotionTrace, half_cycle_csv, impact_csv, json, page, rows_csv, sentences_of,
     svg_figures,
 };
+use teeter_study::measured::Channel;
 
 #[derive(Debug)]
 pub(crate) struct Options {
@@ -162,11 +163,15 @@ fn write_all(
     let count = |which: fn(&teeter_study::compare::ImpactPair) -> bool| {
         comparison.impacts.iter().filter(|pair| which(pair)).count()
     };
-    text += &format!(
-        "impacts: {} measured, {} simulated, {paired} paired\n",
-        count(|pair| pair.measured.is_some()),
-        count(|pair| pair.simulated.is_some())
-    );
+    text += &match comparison.channel(Channel::Phi) {
+        Some(_) => format!(
+            "impacts: {} measured, {} simulated, {paired} paired\n",
+            count(|pair| pair.measured.is_some()),
+            count(|pair| pair.simulated.is_some())
+        ),
+        // They are where the angle crosses zero.
+        None => "impacts: not looked for, as the table has no angle (phi)\n".to_owned(),
+    };
     for sentence in sentences_of(comparison) {
         text += &format!("  {sentence}\n");
     }

@@ -194,7 +194,7 @@ enum Command {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
         /// Number of cases that run at once (default: one for each core)
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+        #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
         jobs: Option<u16>,
         /// Run only shard I of N, such as 2/8, for one of several machines
         #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
@@ -321,13 +321,13 @@ enum Command {
         #[arg(long, value_name = "ANGLE", value_parser = measured::angle, allow_hyphen_values = true)]
         offset: Option<f64>,
         /// Number of values tried all over the ranges first (default: 16 for each key, and 16 more)
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+        #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
         samples: Option<u16>,
         /// Seed of these values
-        #[arg(long, value_name = "N", default_value = "1", allow_hyphen_values = true)]
+        #[arg(long, value_name = "N", default_value = "1", value_parser = seed, allow_negative_numbers = true)]
         seed: u64,
         /// Number of runs at once (default: one for each core)
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+        #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
         jobs: Option<u16>,
         /// Folder of the files that the scene names (default: the scene file's own)
         #[arg(long, value_name = "DIR")]
@@ -486,6 +486,17 @@ pub(crate) fn key_value(text: &str) -> Result<(String, String), String> {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
         _ => Err("write KEY=VALUE, such as time.step=50us".to_owned()),
     }
+}
+
+/// A number of things to do, 1 or more.
+fn count(text: &str) -> Result<u16, String> {
+    let count = text.parse::<u16>().ok().filter(|count| *count > 0);
+    count.ok_or_else(|| format!("a whole number from 1 to {} is expected", u16::MAX))
+}
+
+/// A seed of random numbers.
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("a whole number from 0 to {} is expected", u64::MAX))
 }
 
 /// Prints clap's help and version to standard output, errors of usage to standard error.

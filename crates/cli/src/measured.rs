@@ -25,16 +25,16 @@ pub(crate) struct MeasuredOptions {
     columns: Option<PathBuf>,
     /// The column of t, phi, omega, x, y, vx or vy, by its heading or number, such as phi="Angle";
     /// may be repeated
-    #[arg(long = "column", value_name = "NAME=COLUMN", value_parser = crate::key_value)]
+    #[arg(long = "column", value_name = "NAME=COLUMN", value_parser = column)]
     column: Vec<(String, String)>,
     /// The unit of a column that has none in its heading, such as phi=deg; may be repeated
-    #[arg(long = "unit", value_name = "NAME=UNIT", value_parser = crate::key_value)]
+    #[arg(long = "unit", value_name = "NAME=UNIT", value_parser = unit)]
     unit: Vec<(String, String)>,
     /// Rows per second, for a table without times or with numbers of frames, such as "165 Hz"
     #[arg(long, value_name = "RATE", value_parser = rate, allow_hyphen_values = true)]
     rate: Option<f64>,
     /// Lines before the heading that are not read
-    #[arg(long, value_name = "LINES")]
+    #[arg(long, value_name = "LINES", value_parser = skip, allow_negative_numbers = true)]
     skip: Option<usize>,
     /// Lines of the table whose frames are wrong and taken as lost, such as 62,90-95
     #[arg(long, value_name = "LINES", value_parser = lines)]
@@ -57,6 +57,24 @@ pub(crate) struct MeasuredOptions {
 /// Lines of the table.
 #[derive(Clone, Debug)]
 struct Lines(Vec<RangeInclusive<usize>>);
+
+fn column(text: &str) -> Result<(String, String), String> {
+    crate::key_value(text).map_err(|_| "write NAME=COLUMN, such as phi=\"Angle\" or phi=2".to_owned())
+}
+
+fn unit(text: &str) -> Result<(String, String), String> {
+    crate::key_value(text).map_err(|_| "write NAME=UNIT, such as phi=deg".to_owned())
+}
+
+fn skip(text: &str) -> Result<usize, String> {
+    text.parse().map_err(|_| "a number of lines is expected, such as 3".to_owned())
+}
+
+/// The first quantity that is given twice, with both values.
+fn twice(given: &[(String, String)]) -> Option<[&(String, String); 2]> {
+    let first = |place: usize| given[..place].iter().find(|(name, _)| *name == given[place].0);
+    (1..given.len()).find_map(|place| Some([first(place)?, &given[place]]))
+}
 
 fn lines(text: &str) -> Result<Lines, String> {
     line_ranges(text).map(Lines)
@@ -94,6 +112,11 @@ fn window(text: &str) -> Result<usize, String> {
     }
 }
 
+/// A mistake in an option.
+fn usage(option: &str, why: String) -> String {
+    format!("error: --{option}: {why}")
+}
+
 impl MeasuredOptions {
     /// What is given of the alignment.
     pub(crate) fn alignment(&self) -> AlignmentSettings {
@@ -119,7 +142,15 @@ impl MeasuredOptions {
                 ColumnLayout::read(&text, &name).map_err(|found| Presenter::new(&text).all(&found))?
             }
         };
-        let usage = |option: &str, why: String| format!("error: --{option}: {why}");
+        for (option, given) in [("column", &self.column), ("unit", &self.unit)] {
+            if let Some([(name, first), (_, second)]) = twice(given) {
+                let [name, first, second] = [name, first, second].map(|text| printable(text));
+                return Err(usage(
+                    option,
+                    format!("{name} is given twice, as `{first}` and as `{second}`: keep one of the two"),
+                ));
+            }
+        }
         for (name, column) in &self.column {
             layout.set_column(name, column).map_err(|why| usage("column", why))?;
         }
@@ -132,7 +163,29 @@ impl MeasuredOptions {
             layout.leave_out.clone_from(lines);
         }
         let bytes = bytes(&self.measured)?;
-        Measured::read(&bytes, &layout, block).map_err(|error| format!("error: {}: {error}", self.measured.display()))
+        let measured = Measured::read(&bytes, &layout, block)
+            .map_err(|error| format!("error: {}: {error}", self.measured.display()))?;
+        self.refuse_wide_window(&measured)?;
+        Ok(measured)
+    }
+
+    /// Refuses a window that no row of the table has on both sides.
+    fn refuse_wide_window(&self, measured: &Measured) -> Result<(), String> {
+        let (window, motion) = (self.window, measured.motion(Sign::AsIs));
+        for (channel, values) in motion.channels.iter().filter(|(channel, _)| channel.rate().is_some()) {
+            let rows = values.iter().filter(|value| value.is_finite()).count();
+            if window > rows {
+                let most = if rows % 2 == 1 { rows } else { rows - 1 };
+                return Err(usage(
+                    "window",
+                    format!(
+                        "{window} rows, but the table has {} in {rows} rows, so that no row has a complete window: {most} at most",
+                        channel.word()
+                    ),
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// Names the columns of the table that aren't read.

@@ -637,5 +637,16 @@ fn a_flat_fall_is_aligned_by_its_height_and_wrong_units_are_guessed() {
     let rows: String = frames.iter().map(|row| format!("{},{}\n", 1e3 * row[0], row[2])).collect();
     std::fs::write(folder.join("ms.csv"), format!("t,y\n{rows}")).unwrap();
     let told = String::from_utf8(teeter(&folder, &["compare", "run", "ms.csv", "--force"]).stderr).unwrap();
+    let text = done(&folder, &["compare", "run", "ms.csv", "--unit", "t=ms", "--force"]);
+    assert!(text.contains("impacts: not looked for, as the table has no angle (phi)"), "{text}");
+    // The middle row, the only one with a complete window, is of the time before the release.
+    let rows = rows.lines().count();
+    let wide = format!("--window={}", if rows % 2 == 1 { rows } else { rows - 1 });
+    let early = ["--unit", "t=ms", "--shift", "-0.8 s", "--sign", "1", "--force", &wide];
+    let text = done(&folder, &[&["compare", "run", "ms.csv"], &early[..]].concat());
+    assert!(
+        text.contains("warning: vy is not compared: no row that counts has a complete window in both motions"),
+        "{text}"
+    );
     assert!(told.contains("if the times are in milliseconds, say so: --unit t=ms"), "{told}");
 }

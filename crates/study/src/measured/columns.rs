@@ -4,10 +4,10 @@ use super::layout::{ColumnLayout, ColumnSpec, NAMES};
 use super::read::MeasuredError;
 use super::table::{TextTable, is_not_a_number, number};
 use std::cell::RefCell;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use teeter_scenario::diagnostic::printable;
 use teeter_scenario::dimension::Dimension;
-use teeter_scenario::quantity;
+use teeter_scenario::quantity::{self, QuantityError};
 use teeter_scenario::suggest::nearest;
 
 /// The largest number accepted, as for keys of a scene.
@@ -18,8 +18,8 @@ pub(super) struct Columns<'a> {
     pub(super) table: &'a TextTable,
     /// Titles and units of the heading.
     pub(super) names: Vec<(String, Option<String>)>,
-    /// The columns that were read.
-    read: RefCell<BTreeSet<usize>>,
+    /// The columns that were read, each with what it holds.
+    read: RefCell<BTreeMap<usize, String>>,
     /// Of these, what has no unit in the heading nor a given one.
     pub(super) without_unit: RefCell<BTreeSet<String>>,
 }
@@ -96,9 +96,22 @@ impl<'a> Columns<'a> {
             true => quantity::parse(unit, dimension),
             false => quantity::parse(&format!("1 {unit}"), dimension),
         };
+        if let Some(other) = self.read.borrow().get(&place) {
+            let heading = self.table.heading.as_ref().and_then(|(_, cells)| cells.get(place));
+            let headed = heading.map(|cell| format!(" (`{}`)", printable(cell))).unwrap_or_default();
+            return Err(MeasuredError::Columns(format!(
+                "column {}{headed} is read both as {other} and as {what}: give each its own column",
+                place + 1
+            )));
+        }
+        let contradicts = |given: &str, heading: &str| match (factor(given), factor(heading)) {
+            (Ok(by_spec), Ok(by_heading)) => (by_spec - by_heading).abs() > 1e-12 * by_heading.abs(),
+            // What stands in brackets may be no unit, as in `Angle (left)`; a unit of something else is one.
+            (Ok(_), Err(QuantityError::WrongDimension { .. } | QuantityError::AngularFrequency { .. })) => true,
+            _ => false,
+        };
         if let (Some(given), Some(heading)) = (spec.unit.as_deref(), heading)
-            && let (Ok(by_spec), Ok(by_heading)) = (factor(given), factor(heading))
-            && (by_spec - by_heading).abs() > 1e-12 * by_heading.abs()
+            && contradicts(given, heading)
         {
             return Err(MeasuredError::Columns(format!(
                 "the unit `{}` of {what} contradicts its heading, which says `{}`: leave the unit out, or correct the heading",
@@ -121,7 +134,15 @@ impl<'a> Columns<'a> {
                 MeasuredError::Columns(format!("the unit `{}` of {what}: {told}", printable(unit)))
             })?,
         };
-        self.read.borrow_mut().insert(place);
+        if let Some(unit) = spec.unit.as_deref().or(heading)
+            && !(scale > 0.0)
+        {
+            let unit = printable(unit);
+            return Err(MeasuredError::Columns(format!(
+                "the unit `{unit}` of {what} has no size: it must be positive"
+            )));
+        }
+        self.read.borrow_mut().insert(place, what.to_owned());
         if spec.unit.as_deref().or(heading).is_none() && dimension != Dimension::NONE {
             self.without_unit.borrow_mut().insert(what.to_owned());
         }
@@ -154,9 +175,15 @@ impl<'a> Columns<'a> {
         let headings = self.table.heading.iter().flat_map(|(_, cells)| cells).enumerate();
         headings
             // A comma at the end of the heading makes no column.
-            .filter(|(place, cell)| !read.contains(place) && !of_another(cell) && !cell.trim().is_empty())
+            .filter(|(place, cell)| !read.contains_key(place) && !of_another(cell) && !cell.trim().is_empty())
             .map(|(_, cell)| cell.clone())
             .collect()
+    }
+
+    /// The text in a row of the column that was read as this quantity, and the number of the column from 1.
+    pub(super) fn cell_of(&self, what: &str, row: usize) -> Option<(&str, usize)> {
+        let place = self.read.borrow().iter().find(|(_, read)| *read == what).map(|(place, _)| *place)?;
+        Some((self.table.rows.get(row)?.1.get(place)?.as_str(), place + 1))
     }
 
     pub(super) fn missing(&self, name: &str, what: &str) -> MeasuredError {
@@ -204,6 +231,12 @@ impl<'a> Columns<'a> {
 
     pub(super) fn times(&self, layout: &ColumnLayout, block: &str) -> Result<Vec<f64>, MeasuredError> {
         let spec = self.wanted(layout, "t", block);
+        if layout.rate.is_some() && layout.columns.get("t").is_some_and(|given| given.unit.is_some()) {
+            return Err(MeasuredError::Columns(
+                "with a rate the rows or frames are counted, which have no unit: leave out the unit of t, or the rate"
+                    .to_owned(),
+            ));
+        }
         let times = match (layout.rate, spec) {
             (Some(rate), None) => {
                 self.refuse_lost_frames()?;

@@ -60,6 +60,8 @@ pub(super) const NAMES: [&str; 7] = ["t", "phi", "omega", "x", "y", "vx", "vy"];
 const KEYS: [&str; 7] = ["separator", "skip", "leave_out", "rate", "y_down", "columns", "marker"];
 const COLUMN_EXAMPLE: &str =
     "give its heading, such as \"Angle\", or its number, or { column = \"Angle\", unit = \"deg\" }";
+const MARKER_UNIT_EXAMPLE: &str = "such as \"mm\", or the length of a pixel, such as \"0.21 mm\"";
+const PLACE_EXAMPLE: &str = "give x and y from the mass centre of the upright block, such as [\"1 cm\", \"-3 cm\"]";
 const MARKER_KEYS: [&str; 4] = ["x", "y", "unit", "at"];
 const MARKER_EXAMPLE: &str = "such as { x = \"top x\", y = \"top y\", unit = \"mm\", at = [\"0 cm\", \"6 cm\"] }, with `at` from the mass centre of the upright block";
 
@@ -236,12 +238,43 @@ fn column(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>) -> Option<Co
         let inner_path = format!("{path}.{name}");
         match (name, heading(reader, &inner)) {
             ("column", Some(text)) => spec.column = Some(text),
-            ("unit", Some(text)) => spec.unit = Some(text),
-            ("column" | "unit", None) => reader.wrong(&inner_path, Some(&inner), "a text is expected", COLUMN_EXAMPLE),
+            ("unit", _) => spec.unit = unit(reader, &inner_path, &inner, "such as \"deg\""),
+            ("column", None) => reader.wrong(&inner_path, Some(&inner), "not a column", COLUMN_EXAMPLE),
             (other, _) => reader.unknown(&inner_path, &inner, other, &["column", "unit"]),
         }
     }
     Some(spec)
+}
+
+/// A unit. A bare number is refused: it would be the size of a pixel in nobody knows what.
+fn unit(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>, example: &str) -> Option<String> {
+    let unit = node.text().map(str::trim).filter(|unit| !unit.is_empty());
+    if unit.is_none() {
+        reader.wrong(path, Some(node), "a unit in quotes is expected", example);
+    }
+    unit.map(str::to_owned)
+}
+
+/// The place of a marker on the block, m.
+fn place(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>) -> Option<[f64; 2]> {
+    let Some(lengths) = node.array() else {
+        reader.wrong(path, Some(node), "a list of two lengths is expected", PLACE_EXAMPLE);
+        return None;
+    };
+    let [x, y] = lengths.as_slice() else {
+        let are = if lengths.len() == 1 { "1 item is" } else { &format!("{} items are", lengths.len()) };
+        reader.wrong(path, Some(node), &format!("two lengths are expected, but {are} given"), PLACE_EXAMPLE);
+        return None;
+    };
+    let mut length = |axis: &str, node: &Node<'_, '_>| {
+        let read = match node.text() {
+            Some(text) => quantity::parse(text, Dimension::LENGTH).map_err(|error| error.with_remedy()),
+            None => Err("a length in quotes is expected".to_owned()),
+        };
+        read.map_err(|why| reader.wrong(path, Some(node), &format!("{axis}: {why}"), PLACE_EXAMPLE)).ok()
+    };
+    let (x, y) = (length("x", x), length("y", y));
+    Some([x?, y?])
 }
 
 fn marker(reader: &mut Reader<'_>, name: &str, node: &Node<'_, '_>) -> Option<MarkerSpec> {
@@ -250,31 +283,26 @@ fn marker(reader: &mut Reader<'_>, name: &str, node: &Node<'_, '_>) -> Option<Ma
         reader.wrong(&path, Some(node), "not a marker", MARKER_EXAMPLE);
         return None;
     };
-    let (mut x, mut y, mut unit, mut at) = (None, None, None, None);
+    let (mut x, mut y, mut unit_of_both, mut at) = (None, None, None, None);
     for (key, inner) in entries(table) {
         let inner_path = format!("{path}.{key}");
         match key {
-            "x" => x = heading(reader, &inner),
-            "y" => y = heading(reader, &inner),
-            "unit" => unit = inner.text().map(str::to_owned),
-            "at" => {
-                let read = |node: &Node<'_, '_>| quantity::parse(node.text()?, Dimension::LENGTH).ok();
-                let place = inner.array().and_then(|pair| match pair.as_slice() {
-                    [x, y] => Some([read(x)?, read(y)?]),
-                    _ => None,
-                });
-                if place.is_none() {
-                    let remedy = "give x and y from the mass centre, such as [\"1 cm\", \"-3 cm\"]";
-                    reader.wrong(&inner_path, Some(&inner), "two lengths are expected", remedy);
+            "x" | "y" => {
+                let column = heading(reader, &inner);
+                if column.is_none() {
+                    reader.wrong(&inner_path, Some(&inner), "not a column", MARKER_EXAMPLE);
+                    return None;
                 }
-                at = place;
+                *(if key == "x" { &mut x } else { &mut y }) = column;
             }
+            "unit" => unit_of_both = unit(reader, &inner_path, &inner, MARKER_UNIT_EXAMPLE),
+            "at" => at = place(reader, &inner_path, &inner),
             other => reader.unknown(&inner_path, &inner, other, &MARKER_KEYS),
         }
     }
     match (x, y) {
         (Some(x), Some(y)) => {
-            let spec = |column: String| ColumnSpec { column: Some(column), unit: unit.clone() };
+            let spec = |column: String| ColumnSpec { column: Some(column), unit: unit_of_both.clone() };
             Some(MarkerSpec { name: name.to_owned(), x: spec(x), y: spec(y), at })
         }
         _ => {
@@ -303,6 +331,30 @@ mod tests {
         let (place, same) = ("[\"1 cm\", \"2 cm\"]", "[\"10 mm\", \"20 mm\"]");
         let found = ColumnLayout::read(&(marker("a", place) + &marker("b", same)), "f").unwrap_err().to_string();
         assert!(found.contains("marker.b.at") && found.contains("the place of the marker `a`, too"), "{found}");
+    }
+
+    #[test]
+    fn a_unit_or_a_place_that_cannot_be_read_says_what_is_wrong_with_it() {
+        let other = "[marker.b]\nx = \"bx\"\ny = \"by\"\nat = [\"0 cm\", \"4 cm\"]\n";
+        let found = |line: &str| {
+            let text = format!("{other}[marker.a]\nx = \"ax\"\ny = \"ay\"\n{line}\n");
+            let found = ColumnLayout::read(&text, "f").unwrap_err();
+            let told = found.iter().filter(|finding| finding.path.starts_with("marker.a."));
+            told.map(|finding| finding.rule.clone()).collect::<Vec<_>>().join("; ")
+        };
+        let at = "at = [\"1 cm\", \"2 cm\"]";
+        for unit in ["0.21", "21", "[\"mm\"]", "\"\"", "true"] {
+            assert_eq!(found(&format!("{at}\nunit = {unit}")), "a unit in quotes is expected", "{unit}");
+        }
+        for unit in ["5", "0.5", "[\"deg\"]"] {
+            let text = format!("[columns]\nphi = {{ column = 2, unit = {unit} }}\n");
+            let found = ColumnLayout::read(&text, "f").unwrap_err().to_string();
+            assert!(found.contains("columns.phi.unit") && found.contains("a unit in quotes is expected"), "{found}");
+        }
+        assert_eq!(found("at = [\"-1\", \"6 cm\"]"), "x: the unit is missing");
+        assert_eq!(found("at = [\"1 cm\", 6]"), "y: a length in quotes is expected");
+        assert_eq!(found("at = [\"-1 cm\"]"), "two lengths are expected, but 1 item is given");
+        assert_eq!(found("at = \"-1 cm\""), "a list of two lengths is expected");
     }
 
     #[test]

@@ -30,6 +30,12 @@ pub enum MeasuredError {
     /// Nothing is in it.
     #[error("the file is empty")]
     Empty,
+    /// All lines are skipped.
+    #[error("all of its {lines} line{} are skipped: `skip` is the number of lines before the heading", if *.lines == 1 { "" } else { "s" })]
+    AllSkipped {
+        /// Number of lines of the file.
+        lines: usize,
+    },
     /// There is a heading only.
     #[error("there is a heading, but no row of numbers")]
     NoRows,
@@ -182,14 +188,22 @@ impl Measured {
                 return Err(MeasuredError::TooFew { channel: channel.word(), found });
             }
             if let Some(row) = values.iter().position(|phi| *channel == Channel::Phi && phi.abs() > LARGEST_ANGLE) {
-                return Err(MeasuredError::line(
-                    columns.table.rows[row].0,
-                    format!(
+                let line = columns.table.rows[row].0;
+                // As it is written: in its unit, not in rad.
+                let (cell, column) = columns.cell_of(channel.word(), row).unwrap_or_default();
+                let told = match self.is_without_unit(channel.word()) {
+                    true => format!(
                         "phi = {} rad is more than half a turn; if the angles are in degrees, say so: --unit phi=deg, or \
                          the heading `phi [deg]`",
                         values[row]
                     ),
-                ));
+                    false => format!(
+                        "`{}` in column {column} (phi) is more than half a turn; if that frame is wrong, leave it out \
+                         (--leave-out {line}), or leave its cell empty",
+                        printable(cell)
+                    ),
+                };
+                return Err(MeasuredError::line(line, told));
             }
         }
         let complete = (0..self.t.len()).filter(|&row| self.markers.iter().all(|marker| marker.is_seen(row))).count();
@@ -383,14 +397,18 @@ mod tests {
 
     #[test]
     fn markers_of_the_same_columns_are_refused() {
-        let rows: String = (0..20).map(|k| format!("{k},{},{},{}\n", 3 * k, 2 * k, 5 * k)).collect();
+        let rows: String = (0..20).map(|k| format!("{k},{},{},{},{}\n", 3 * k, 2 * k, 3 * k, 2 * k)).collect();
         let read = |toml: &str| {
-            Measured::read(format!("t,ax,ay,bx\n{rows}").as_bytes(), &ColumnLayout::read(toml, "l").unwrap(), "b")
+            Measured::read(format!("t,ax,ay,bx,by\n{rows}").as_bytes(), &ColumnLayout::read(toml, "l").unwrap(), "b")
         };
         let a = "[marker.a]\nx = \"ax\"\ny = \"ay\"\n";
-        let found = read(&format!("{a}[marker.b]\nx = 2\ny = 3\n")).unwrap_err().to_string();
+        let with_b =
+            |x: &str, y: &str| read(&format!("{a}[marker.b]\nx = {x}\ny = {y}\n")).map_err(|error| error.to_string());
+        let found = with_b("2", "3").unwrap_err();
+        assert!(found.contains("column 2 (`ax`) is read both as marker.a.x and as marker.b.x"), "{found}");
+        let found = with_b("4", "\"by\"").unwrap_err();
         assert!(found.contains("the markers `a` and `b` are at the same place in all rows"), "{found}");
-        assert!(read(&format!("{a}[marker.b]\nx = \"bx\"\ny = \"ay\"\n")).is_ok());
+        assert!(with_b("\"by\"", "\"bx\"").is_ok());
     }
 
     #[test]
@@ -456,6 +474,23 @@ mod tests {
     }
 
     #[test]
+    fn a_column_holds_one_quantity_in_the_unit_of_its_heading() {
+        let text = format!("t,phi [deg],y [px]\n{}", rows(|k| format!("{},{k},{k}", 0.1 * k as f64)));
+        let message = |columns: &str| read(&text, &ColumnLayout::read(columns, "f").unwrap()).err();
+        let twice = "column 2 (`phi [deg]`) is read both as phi and as x: give each its own column";
+        assert_eq!(message("[columns]\nx = { column = 2, unit = \"mm\" }\n").as_deref(), Some(twice));
+        let contradicts =
+            "the unit `mm` of x contradicts its heading, which says `deg`: leave the unit out, or correct the heading";
+        let other = "[columns]\nphi = { column = 3, unit = \"deg\" }\nx = { column = 2, unit = \"mm\" }\n";
+        assert_eq!(message(other).as_deref(), Some(contradicts));
+        let pixels = |size: &str| message(&format!("[columns]\ny = {{ column = 3, unit = \"{size}\" }}\n"));
+        assert_eq!(pixels("0.21 mm"), None, "a heading in pixels says nothing of their size");
+        assert_eq!(pixels("0 mm").as_deref(), Some("the unit `0 mm` of y has no size: it must be positive"));
+        let counted = message("rate = \"10 Hz\"\n[columns]\nt = { column = 1, unit = \"ms\" }\n");
+        assert!(counted.unwrap().starts_with("with a rate the rows or frames are counted"));
+    }
+
+    #[test]
     fn mistakes_name_the_line() {
         let plain = ColumnLayout::default();
         let message = |text: &str| read(text, &plain).unwrap_err();
@@ -464,6 +499,16 @@ mod tests {
         assert_eq!(message("t,phi\n"), "there is a heading, but no row of numbers");
         assert_eq!(message("t,phi\n0,0.1\n"), "phi has 1 value, but a motion needs 8 or more");
         assert_eq!(message(&format!("t,phi\n{good}5,0.1\n")), "line 22: t = 5 s is not after the row before, t = 19 s");
+        assert_eq!(
+            message(&format!("t,phi [deg]\n{}20,-999\n", rows(|k| format!("{k},5")))),
+            "line 22: `-999` in column 2 (phi) is more than half a turn; if that frame is wrong, leave it out (--leave-out 22), \
+             or leave its cell empty"
+        );
+        let skipping = ColumnLayout { skip: 9999, ..ColumnLayout::default() };
+        assert_eq!(
+            read("t,phi\n0,0.1\n", &skipping).unwrap_err(),
+            "all of its 2 lines are skipped: `skip` is the number of lines before the heading"
+        );
         assert_eq!(
             message("t,phi\n0,0.1\n1,nan\n"),
             "line 3: `nan` in column 2 (phi) is not a number; leave the cell of a lost frame empty"

@@ -25,7 +25,14 @@ impl TextTable {
             text.lines().enumerate().skip(skip).filter(|(_, line)| kept(line)).map(|(k, line)| (k + 1, line));
         let first: Vec<&str> = lines.clone().take(2).map(|(_, line)| line).collect();
         // The heading may have blanks in its names, so the row below it decides.
-        let Some(sample) = first.last() else { return Err(MeasuredError::Empty) };
+        let Some(sample) = first.last() else {
+            let lines = text.lines().count();
+            return Err(if skip >= lines && lines > 0 {
+                MeasuredError::AllSkipped { lines }
+            } else {
+                MeasuredError::Empty
+            });
+        };
         let separator = separator.unwrap_or_else(|| found_separator(sample));
         let mut rows = Vec::new();
         let mut heading = None;

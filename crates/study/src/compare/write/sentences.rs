@@ -112,6 +112,15 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
         short(measured.interval()),
         settings.window
     ));
+    let unseen = comparison.channels.iter().filter(|found| !found.is_measured && found.differences.rows == 0);
+    let unseen: Vec<&str> = unseen.map(|found| found.channel.word()).collect();
+    if !unseen.is_empty() {
+        texts.push(format!(
+            "warning: {} {} not compared: no row that counts has a complete window in both motions; a smaller --window has more",
+            unseen.join(" and "),
+            if unseen.len() == 1 { "is" } else { "are" }
+        ));
+    }
     if let Some(found) = measured.markers {
         texts.push(format!(
             "{} markers fit a rigid body within {} mm (root mean square), at most {} mm at t = {} s of the table",
