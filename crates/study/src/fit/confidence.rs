@@ -38,6 +38,14 @@ impl Estimate {
         let [low, high] = self.interval;
         self.as_good.map_or((low, high), |as_good| (low.min(as_good.0), high.max(as_good.1)))
     }
+
+    /// The ends of the interval that are those of values found to fit as well, rather than those by the standard error; `None`
+    /// where neither is.
+    pub(super) fn beyond_error(&self) -> Option<(Option<f64>, Option<f64>)> {
+        let (as_good, [low, high]) = (self.as_good?, self.interval);
+        let ends = (Some(as_good.0).filter(|end| *end < low), Some(as_good.1).filter(|end| *end > high));
+        (ends != (None, None)).then_some(ends)
+    }
 }
 
 /// Two estimates of which a change of one makes up for a change of the other.
@@ -140,9 +148,11 @@ pub(super) fn of(
     let freedom = (n - columns.len() as f64).max(1.0);
     let variance = fitted.cost * n / freedom * fewer;
     // What the motion doesn't depend on says nothing of the others, and isn't known: the rest is.
-    let matters = |k: usize, column: &[f64]| {
-        let norm = column.iter().map(|x| x * x).sum::<f64>().sqrt();
-        norm > if k < keys.len() { NO_EFFECT * variance.sqrt() } else { 0.0 }
+    // So does what the time shift and the origins make up for entirely: a slip before the first row only moves x.
+    let fitted_with = columns[keys.len()..].to_vec();
+    let matters = |k: usize, column: &[f64]| match k < keys.len() {
+        true => norm(&beside_all(column, &fitted_with)) > NO_EFFECT * variance.sqrt(),
+        false => norm(column) > 0.0,
     };
     let known: Vec<usize> = (0..columns.len()).filter(|&k| matters(k, &columns[k])).collect();
     // Once more with differences over about a standard error: over a shorter distance they would
@@ -232,6 +242,34 @@ pub(super) fn of(
     })
 }
 
+fn norm(column: &[f64]) -> f64 {
+    column.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// What is left of a column that no combination of `others` gives, by Gram and Schmidt's method.
+fn beside_all(column: &[f64], others: &[Vec<f64>]) -> Vec<f64> {
+    let mut orthonormal: Vec<Vec<f64>> = Vec::new();
+    let without = |column: &[f64], orthonormal: &[Vec<f64>]| {
+        let mut left = column.to_vec();
+        for _ in 0..2 {
+            // Twice: what rounding leaves of a large part isn't small beside a small rest.
+            for unit in orthonormal {
+                let part: f64 = unit.iter().zip(&left).map(|(a, b)| a * b).sum();
+                left.iter_mut().zip(unit).for_each(|(left, unit)| *left -= part * unit);
+            }
+        }
+        left
+    };
+    for other in others {
+        let left = without(other, &orthonormal);
+        let length = norm(&left);
+        if length > 1e-12 * norm(other) {
+            orthonormal.push(left.iter().map(|x| x / length).collect());
+        }
+    }
+    without(column, &orthonormal)
+}
+
 /// The inverse of JᵀJ of the columns with these numbers, in a matrix for all: 0 elsewhere.
 fn inverse_of(columns: &[Vec<f64>], known: &[usize]) -> Option<Vec<Vec<f64>>> {
     let product = |a: usize, b: usize| columns[a].iter().zip(&columns[b]).map(|(a, b)| a * b).sum::<f64>();
@@ -278,6 +316,39 @@ mod tests {
         let two = inverse_of(&[columns[0].clone(), columns[2].clone()], &[0, 1]).unwrap();
         assert_eq!([all[0][0], all[0][2], all[2][2], all[1][1]], [two[0][0], two[0][1], two[1][1], 0.0]);
         assert!(inverse_of(&columns, &[0, 1, 2]).is_none());
+    }
+
+    #[test]
+    fn what_an_origin_makes_up_for_has_no_effect() {
+        let origin = vec![-2.0; 5];
+        let shift = vec![0.1, 0.4, -0.3, 0.2, 0.1];
+        let moves: Vec<f64> = shift.iter().map(|x| 500.0 + 3.0 * x).collect();
+        assert!(norm(&beside_all(&moves, &[origin.clone(), shift.clone()])) < 1e-11);
+        let bends = [1.0, 0.0, 0.0, 0.0, 0.0];
+        let left = beside_all(&bends, &[origin.clone(), shift.clone(), origin.clone()]);
+        assert!(norm(&left) > 0.5);
+        for other in [&origin, &shift] {
+            assert!(left.iter().zip(other).map(|(a, b)| a * b).sum::<f64>().abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn ends_that_the_standard_error_gives_are_none_of_values_that_fit_as_well() {
+        let of = |as_good: Option<(f64, f64)>| Estimate {
+            name: "k".to_owned(),
+            unit: String::new(),
+            value: 2.0,
+            standard_error: 0.25,
+            at_bound: false,
+            share_of_range: Some(0.1),
+            as_good,
+            bounds: Some((0.0, 10.0)),
+            interval: [1.5, 2.5],
+        };
+        assert_eq!(of(Some((1.1, 2.1))).beyond_error(), Some((Some(1.1), None)));
+        assert_eq!(of(Some((1.7, 3.0))).beyond_error(), Some((None, Some(3.0))));
+        assert_eq!(of(Some((1.0, 3.0))).beyond_error(), Some((Some(1.0), Some(3.0))));
+        assert_eq!((of(Some((1.7, 2.1))).beyond_error(), of(None).beyond_error()), (None, None));
     }
 
     #[test]

@@ -78,7 +78,7 @@ pub struct Fit {
     pub residual_correlation: f64,
     /// How improbable the residuals are for noise, in standard deviations of a normal distribution.
     pub misfit: f64,
-    /// Up to when the motions were compared, s.
+    /// Up to when the motions were compared for the fit, s.
     pub until: f64,
     /// Number of measured rows that were compared.
     pub rows: usize,
@@ -88,7 +88,8 @@ pub struct Fit {
     pub restarts: Vec<(Vec<f64>, f64)>,
     /// All that was tried.
     pub evaluations: Vec<Evaluation>,
-    /// Up to when the fitted scene is predictable, s, and whether that cuts the data off.
+    /// Up to when the fitted scene is predictable, s. It may be beyond `until`, where values that were fitted to more rows are predictable up to
+    /// there only.
     pub horizon: f64,
     /// The measured and the fitted motion.
     pub comparison: Comparison,
@@ -144,7 +145,7 @@ const ROUNDS: usize = 4;
 /// How often better values beside the fitted ones take their place.
 const MOVES: usize = 6;
 /// A horizon that moves by less than this share cuts nothing off.
-const SAME_HORIZON: f64 = 0.02;
+pub(super) const SAME_HORIZON: f64 = 0.02;
 
 /// What is fitted to what.
 #[derive(Clone, Copy)]
@@ -244,7 +245,14 @@ impl Fit {
                 }
             }
         }
+        let examined = best[0].at.clone();
         let found = confidence_of_best(&objective, &mut best, settings.threads, &mut evaluations, report)?;
+        if best[0].at != examined
+            && let Ok(scene) = source.load(&objective.setting(&best[0].at))
+            && let Ok(divergence) = divergence(&scene.scene, cancel)
+        {
+            horizon = divergence.horizon();
+        }
         if objective.cancel.load(std::sync::atomic::Ordering::Relaxed) {
             return Err(FitError::Interrupted);
         }

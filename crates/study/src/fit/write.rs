@@ -1,6 +1,6 @@
 //! What a fit writes.
 
-use super::{Estimate, Fit};
+use super::{Estimate, Fit, SAME_HORIZON};
 use crate::compare::{
     Alignment, STYLE, fixed, horizon_note, motion_figures, origin_of_side, other_alignments, outliers, sentences_of,
 };
@@ -217,18 +217,24 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
             };
             texts.push(format!("warning: {} is at the bound of its range{remedy}", found.name));
         }
-        if let Some((low, high)) = found.as_good {
+        if let Some(beyond) = found.beyond_error() {
+            let (low, high) = found.interval();
             let decimals = decimals_of(0.25 * (high - low)).unwrap_or(5);
-            let [value, low, high] = [found.value, low, high].map(|value| format!("{value:.decimals$}"));
+            let text = |value: f64| format!("{value:.decimals$}");
+            let (low, high) = beyond;
+            let ends =
+                [low.map(|end| format!("down to {}", text(end))), high.map(|end| format!("up to {}", text(end)))];
+            let (value, range) = (text(found.value), ends.into_iter().flatten().collect::<Vec<_>>().join(" and "));
             texts.push(format!(
-                "warning: values of {} from {low} to {high}{} fit about as well as {value}: the differences are a rough function of it, of which the standard error knows only the neighbourhood",
+                "warning: values of {} {range}{} fit about as well as {value}: the differences are a rough function of it, of which the standard error knows only the neighbourhood",
                 found.name,
                 spaced(&found.unit),
             ));
         }
         if found.share_of_range.is_some_and(|share| !share.is_finite()) {
             texts.push(format!(
-                "warning: near the fitted values the motion doesn’t depend on {}: it isn’t determined",
+                "warning: near the fitted values the motion doesn’t depend on {}, or only by what the time shift and the origins that are \
+                 fitted with it make up for: it isn’t determined",
                 found.name
             ));
         } else if found.share_of_range.is_some_and(|share| !(share <= HARDLY)) {
@@ -278,9 +284,9 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
     let (first, last) = t.first().zip(t.last()).map_or((0.0, f64::INFINITY), |(first, last)| (*first, *last));
     let ends_before = last + (last - first) / t.len() as f64 <= fit.until;
     let cut = match fit.until {
-        _ if ends_before => "the last row",
-        until if until < fit.comparison.trace.end() => "its horizon",
-        _ => "the end of the run",
+        _ if ends_before => "the last row".to_owned(),
+        until if until < fit.comparison.trace.end() => origin_of_end(until, fit.horizon),
+        _ => "the end of the run".to_owned(),
     };
     texts.push(format!(
         "{}fitted up to t = {:.3} s ({cut}), {} of {} rows{}",
@@ -321,6 +327,17 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
         ));
     }
     texts
+}
+
+/// Why the rows that are fitted end at `until`, s.
+fn origin_of_end(until: f64, horizon: f64) -> String {
+    if (horizon - until).abs() <= SAME_HORIZON * until {
+        "its horizon".to_owned()
+    } else if horizon > until {
+        format!("the horizon of values fitted to more rows; that of these values is t = {horizon:.3} s")
+    } else {
+        format!("beyond its horizon, t = {horizon:.3} s, where rows don’t tell much")
+    }
 }
 
 /// The name of an estimate as HTML: keys as code, broken where their parts end, what is fitted with them in words.
