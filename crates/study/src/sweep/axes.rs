@@ -46,15 +46,23 @@ pub(super) struct RandomKey {
     pub(super) unit: WrittenNumber,
 }
 
-/// Keys with their values: `contact.feet.friction = [0.3, 0.5]`, quoted or not.
+/// Keys with their values in the order of the file: `contact.feet.friction = [0.3, 0.5]`, quoted or not. Dotted keys that begin
+/// alike share a table, but need not stand together.
 fn leaves<'a, 't>(table: &'a DeTable<'t>, words: &[&str], above: &str) -> Vec<(String, Node<'a, 't>)> {
+    let mut all = nested(table, words, above);
+    all.sort_by_key(|(_, node)| node.start);
+    all
+}
+
+/// [`leaves`] by their tables.
+fn nested<'a, 't>(table: &'a DeTable<'t>, words: &[&str], above: &str) -> Vec<(String, Node<'a, 't>)> {
     let mut all = Vec::new();
     for (name, node) in entries(table) {
         let key = if above.is_empty() { name.to_owned() } else { format!("{above}.{name}") };
         match node.table() {
             // A range has only keys of a range, whose values are no tables: other tables are part of the
             // path.
-            Some(inner) if !is_range(inner, words) => all.extend(leaves(inner, words, &key)),
+            Some(inner) if !is_range(inner, words) => all.extend(nested(inner, words, &key)),
             _ => all.push((key, node)),
         }
     }
@@ -240,7 +248,8 @@ fn listed_files(
 
 /// Keys with random values: `count`, `seed`, `method`, and the keys.
 pub(super) fn samples(reader: &mut Reader<'_>, table: &DeTable<'_>, node: &Node<'_, '_>) -> Option<Samples> {
-    let (mut count, mut seed, mut method, mut keys) = (None, 0, Method::Independent, Vec::new());
+    let (mut count, mut seed, mut method) = (None, 0, Method::Independent);
+    let mut of_keys = Vec::new();
     let before = reader.found.0.len();
     for (name, value) in entries(table) {
         let path = format!("random.{name}");
@@ -248,6 +257,8 @@ pub(super) fn samples(reader: &mut Reader<'_>, table: &DeTable<'_>, node: &Node<
             "count" => match value.whole() {
                 Some(number) if (1..=MOST_VALUES).contains(&number) => count = Some(number),
                 _ => {
+                    // What is refused isn't missing.
+                    count = Some(1);
                     let rule = format!("a whole number from 1 to {MOST_VALUES} is expected");
                     reader.wrong(&path, Some(&value), &rule, "it is the number of samples");
                 }
@@ -270,15 +281,13 @@ pub(super) fn samples(reader: &mut Reader<'_>, table: &DeTable<'_>, node: &Node<
                 }
             },
             _ => match value.table() {
-                Some(inner) if !is_range(inner, &DISTRIBUTIONS) => {
-                    for (key, leaf) in leaves(inner, &DISTRIBUTIONS, name) {
-                        keys.extend(random_key(reader, key, &leaf));
-                    }
-                }
-                _ => keys.extend(random_key(reader, name.to_owned(), &value)),
+                Some(inner) if !is_range(inner, &DISTRIBUTIONS) => of_keys.extend(nested(inner, &DISTRIBUTIONS, name)),
+                _ => of_keys.push((name.to_owned(), value)),
             },
         }
     }
+    of_keys.sort_by_key(|(_, node)| node.start);
+    let keys: Vec<RandomKey> = of_keys.into_iter().filter_map(|(key, node)| random_key(reader, key, &node)).collect();
     let Some(count) = count else {
         reader.wrong("random.count", Some(node), "missing: how many samples?", "such as count = 100");
         return None;
@@ -350,6 +359,39 @@ fn random_key(reader: &mut Reader<'_>, key: String, node: &Node<'_, '_>) -> Opti
 #[cfg(test)]
 mod tests {
     use crate::sweep::Sweep;
+
+    fn read(text: &str) -> Result<Sweep, String> {
+        Sweep::read(text, "f", &|_, _| Err("none".to_owned())).map_err(|found| found.to_string())
+    }
+
+    #[test]
+    fn keys_are_in_the_order_of_the_file_even_where_they_begin_alike() {
+        let text = "scene = 's.toml'\n[grid]\ntime.end = ['1 s', '2 s']\ncontact.feet.friction = [0.3, 0.4]\n\
+            time.step = ['1 ms', '2 ms']\n[random]\nblock.b.width = { uniform = ['1 cm', '2 cm'] }\ncount = 2\n\
+            material.m.density = { uniform = ['1 kg/m^3', '2 kg/m^3'] }\nblock.b.height = { uniform = ['1 cm', '2 cm'] }\n";
+        let sweep = read(text).unwrap();
+        let fixed = ["time.end", "contact.feet.friction", "time.step"];
+        assert_eq!(sweep.keys(), [&fixed[..], &["block.b.width", "material.m.density", "block.b.height"]].concat());
+        // The samples of a combination follow each other; of the grid the last key varies fastest.
+        let values = |case: u64| sweep.case(case).into_iter().take(3).map(|(_, value)| value).collect::<Vec<_>>();
+        assert_eq!(
+            (values(0), values(2)),
+            (
+                vec!["1 s".into(), "0.3".into(), "1 ms".into()],
+                vec!["1 s".to_owned(), "0.3".to_owned(), "2 ms".to_owned()]
+            )
+        );
+    }
+
+    #[test]
+    fn a_number_of_samples_that_is_refused_is_not_missing() {
+        for count in ["0", "-1", "1000001", "1.5"] {
+            let text = format!("scene = 's.toml'\n[random]\ncount = {count}\nk = {{ uniform = [1, 2] }}\n");
+            let found = read(&text).unwrap_err();
+            assert!(found.contains("a whole number from 1 to 1000000 is expected"), "{found}");
+            assert!(!found.contains("missing"), "{found}");
+        }
+    }
 
     #[test]
     fn from_and_to_with_lists_are_keys_of_the_scene() {
