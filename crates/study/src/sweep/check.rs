@@ -16,6 +16,8 @@ use teeter_scenario::suggest::nearest;
 const FIXED_PARTS: [&str; 2] = ["contact", "energy"];
 /// Cases that are looked at before a scene is said to be wrong in all of them.
 const CASES_TRIED: u64 = 16;
+/// Values of a summary that the machine decides.
+const CLOCKED: [&str; 2] = ["wall_seconds", "us_per_step"];
 /// How many columns a message lists.
 const MOST_LISTED: usize = 20;
 
@@ -178,6 +180,11 @@ fn missing(output: &Output, offered: &[Offered]) -> Option<Missing> {
 
 fn missing_value(path: &str, summary: Option<&Summary>) -> Option<Missing> {
     let (key, inner) = path.split_once('.').map_or((path, None), |(key, inner)| (key, Some(inner)));
+    if CLOCKED.contains(&key) {
+        let rule = format!("{key} depends on the machine, and rows that are continued or merged must not");
+        let remedy = "leave it out; `teeter run` of a case tells its time, and `teeter tradeoff` what accuracy costs";
+        return Some(Missing { rule, meant: None, remedy });
+    }
     let rule = || format!("summary.json has no value at {path}");
     if !Summary::KEYS.contains(&key) {
         let near = nearest(key, Summary::KEYS);
