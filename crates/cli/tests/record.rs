@@ -114,11 +114,15 @@ fn what_is_refused_is_told_with_the_key_and_a_remedy() {
     std::fs::write(folder.join("values.csv"), "1\n2\n").unwrap();
     std::fs::write(folder.join("three.csv"), "t [s],NS [gal],EW [gal]\n0,1,2\n0.1,2,3\n").unwrap();
     std::fs::write(folder.join("plain.csv"), "time_s,acc_g\n0,1\n0.1,2\n").unwrap();
+    std::fs::write(folder.join("picture.png"), b"\x89PNG\0\r\n\x1a\n\0\0\0\rIHDR").unwrap();
     std::fs::write(folder.join("down.csv"), "1,1\n0.5,2\n0,1\n").unwrap();
     for (arguments, says) in [
         (&["none.at2"][..], &["none.at2", "can't be read"][..]),
         (&["."], &["is a folder"]),
         (&["values.csv"], &["values.csv", "the step must be given", "add --step \"10 ms\""]),
+        (&["values.csv", "--step", "10"], &["step = 10: a time needs its unit"]),
+        (&["values.csv", "--step", "10 m"], &["step = \"10 m\"", "a time (s) is expected, got a length (m)"]),
+        (&["picture.png"], &["picture.png", "not a text file: byte 4 is 0x00"]),
         (&["a.csv", "--taper", "0.7"], &["taper = 0.7", "[0, 0.5]"]),
         (&["a.csv", "--baseline", "straight"], &["baseline = \"straight\"", "quintic"]),
         (&["a.csv", "--peak", "0.4"], &["peak = 0.4", "m/s^2"]),
@@ -136,6 +140,7 @@ fn what_is_refused_is_told_with_the_key_and_a_remedy() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
         says.iter().for_each(|part| assert!(told.contains(part), "{arguments:?}: «{part}» is missing in\n{told}"));
         assert!(!told.contains("ground.motion"), "{told}");
+        assert_eq!(told.matches("error:").count(), 1, "one mistake is told once: {told}");
         assert!(output.stdout.is_empty());
     }
 }

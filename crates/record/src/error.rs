@@ -30,6 +30,14 @@ pub enum RecordError {
     /// Only blank lines and comments.
     #[error("the file is empty")]
     Empty,
+    /// No text.
+    #[error("not a text file: byte {at} is {byte:#04x}")]
+    NotText {
+        /// Where its first byte is that no text has, from 0.
+        at: usize,
+        /// That byte.
+        byte: u8,
+    },
     /// The format isn't recognised.
     #[error(
         "line {line}: `{text}` doesn't begin a known record format: PEER .AT2, ESM and COSMOS files are read, and tables of \

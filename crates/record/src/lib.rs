@@ -48,7 +48,7 @@ pub use decimal::has_decimal_commas;
 pub use error::RecordError;
 pub use format::Format;
 pub use measures::{IntensityMeasure, Peak};
-pub use record::{ReadSettings, Record};
+pub use record::{ReadSettings, Record, binary_byte};
 pub use spectrum::Response;
 
 /// Standard gravity, m/s²: the unit g of records.

@@ -109,7 +109,11 @@ impl Record {
         }
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let text = String::from_utf8_lossy(bytes);
-        let format = Format::of(&text)?;
+        let format = Format::of(&text).map_err(|error| match binary_byte(bytes) {
+            // Its bytes would say nothing.
+            Some((at, byte)) if matches!(error, RecordError::Unknown { .. }) => RecordError::NotText { at, byte },
+            _ => error,
+        })?;
         if format != Format::Table && settings.unit.is_some() {
             return Err(RecordError::NotForFormat { what: "a unit", applies_to: "tables", format });
         }
@@ -222,4 +226,12 @@ impl Record {
 fn one_line(text: &str) -> String {
     let blank = |c: char| c.is_whitespace() || c.is_control();
     text.split(blank).filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+/// The first byte that no text has, and its place from 0: files with one are binary.
+#[must_use]
+pub fn binary_byte(bytes: &[u8]) -> Option<(usize, u8)> {
+    // A page break and the end of a file of old systems stand in texts, too.
+    let is_text = |byte: u8| byte >= b' ' || matches!(byte, b'\t' | b'\n' | b'\r' | 0x0b | 0x0c | 0x1a);
+    bytes.iter().position(|byte| !is_text(*byte)).map(|at| (at, bytes[at]))
 }

@@ -65,10 +65,12 @@ pub(crate) fn columns(
         let as_before = columns.is_empty() || row.len() == columns.len();
         if !count_of.contains(&row.len()) || !as_before {
             return Err(format!(
-                "line {line}: {} column{}, but a table has {names}, separated by a comma{}",
+                "line {line}: {} column{}, but a table has {names}{}",
                 row.len(),
                 if row.len() == 1 { "" } else { "s" },
-                other_separator(&row).map_or_else(String::new, |other| format!("; these are separated by {other}"))
+                other_separator(&row).map_or_else(String::new, |other| format!(
+                    ", separated by a comma; these are separated by {other}"
+                ))
             ));
         }
         columns.resize_with(row.len(), Vec::new);
@@ -399,7 +401,9 @@ mod tests {
         assert_eq!(told("t;a\n0;1,5\n1;high\n"), "line 3: `high` is not a number");
         assert_eq!(told("0 1\n1 nan\n"), "line 2: the value is NaN, but must be finite");
         assert!(told("1e400x,2\n0,1\n1,2\n").starts_with("line 1: `1e400x` is not a number"));
-        assert_eq!(told("0,1\n1,2,3\n"), "line 2: 3 columns, but a table has two, t and value, separated by a comma");
+        assert_eq!(told("0,1\n1,2,3\n"), "line 2: 3 columns, but a table has two, t and value");
+        assert_eq!(told("0 1\n1 2\n2\n3 0\n"), "line 3: 1 column, but a table has two, t and value");
+        assert_eq!(told("0 1\n1\n2 3\n"), "line 2: 1 column, but a table has two, t and value");
         assert_eq!(told("0,1\n1,high\n"), "line 2: `high` is not a number");
         assert!(told(&"0,1\n".repeat(MOST_ROWS + 1)).starts_with("line 2000001: more than 2000000 rows"));
         assert_eq!(

@@ -6,16 +6,24 @@ use std::borrow::Cow;
 /// that is separated by commas, or has one column, stays as it is.
 ///
 /// # Errors
-/// If a heading separated by blanks can't be told into columns.
+/// If the file isn't text, or a heading separated by blanks can't be told into columns.
 pub(crate) fn with_commas(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
-    // What isn't text has its own message.
+    // Of what is no text, numbers would be told as bytes.
+    if let Some((at, byte)) = teeter_record::binary_byte(bytes) {
+        return Err(format!("not a text file: byte {at} is {byte:#04x}"));
+    }
+    // What isn't in UTF-8 has its own message.
     let Ok(text) = std::str::from_utf8(bytes) else { return Ok(Cow::Borrowed(bytes)) };
     // The heading may have blanks in its names, so the row below it decides.
     let mut rows = text.lines().filter(|line| is_row(line)).take(2);
     let above = rows.next().unwrap_or_default();
     let sample = rows.next().unwrap_or(above);
-    // In a table both have it; otherwise what is wrong is told of the text as it is.
-    let separator = separator_of(sample).filter(|separator| cells(above, *separator).len() > 1);
+    // In a table both have it; otherwise what is wrong is told of the text as it is. Of two rows of numbers the second may be short.
+    let is_short = || {
+        let of_numbers = [above, sample].iter().all(|row| row.trim_start().starts_with(begins_number));
+        separator_of(above).filter(|_| of_numbers && separator_of(sample).is_none())
+    };
+    let separator = separator_of(sample).filter(|separator| cells(above, *separator).len() > 1).or_else(is_short);
     let Some(separator) = separator else { return Ok(Cow::Borrowed(bytes)) };
     let columns = cells(sample, separator).len();
     let mut written = String::with_capacity(text.len() + 16);
@@ -46,6 +54,10 @@ pub(crate) fn with_commas(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
         }
     }
     Ok(Cow::Owned(written.into_bytes()))
+}
+
+fn begins_number(c: char) -> bool {
+    c.is_ascii_digit() || matches!(c, '+' | '-' | '.')
 }
 
 fn is_row(line: &str) -> bool {
@@ -123,6 +135,8 @@ mod tests {
             "0,1\n1,2;3\n",
             "t,a\n0;1\n",
             "a b\n1\n2\n",
+            "1\n2 3\n",
+            "0,1\n1\n",
         ] {
             assert!(matches!(with_commas(text.as_bytes()).unwrap(), Cow::Borrowed(_)), "{text:?}");
         }
@@ -132,6 +146,8 @@ mod tests {
     #[test]
     fn lines_stay_where_they_are() {
         assert_eq!(written("# a;b\r\n\r\n0;1\r\n# c\r\n1;x,y\r\n"), "# a;b\r\n\r\n0,1\n# c\r\n1,\"x,y\"\n");
+        assert_eq!(written("0 1\n1\n2 3\n"), "0,1\n1\n2,3\n", "a second row that is short");
+        assert_eq!(with_commas(b"\x7fELF\x02\0\0\n\0").unwrap_err(), "not a text file: byte 4 is 0x02");
         let told = with_commas(b"time of day [s] a\n0 1\n1 2\n").unwrap_err();
         assert!(told.starts_with("line 1: the heading has 4 columns, but the row below has 2"), "{told}");
     }

@@ -49,6 +49,10 @@ impl Resolver<'_, '_> {
         let taper = self.number(&at("taper"));
         let (file, baseline, taper) = (file?, baseline?, taper?);
         let scaling = self.scaling(path)?;
+        // What is wrong with these is told; without them the record would be another one, or seem to lack what was given.
+        if ["step", "from", "to", "component"].iter().any(|key| doc.is_refused(&at(key))) {
+            return None;
+        }
         let keys = RecordKeys {
             file,
             step: doc.quantity(&at("step")),
@@ -180,6 +184,9 @@ fn blamed<'k>(error: &RecordError, key: &'k str) -> &'k str {
 /// What to do about an error.
 fn remedy(error: &RecordError) -> &'static str {
     match error {
+        RecordError::NotText { .. } => {
+            "give a record of acceleration: PEER .AT2, ESM or COSMOS ASCII, or a table of time and acceleration"
+        }
         RecordError::StepNeeded => "add step, such as step = \"10 ms\"",
         RecordError::StepTwice { .. } | RecordError::UnitTwice { .. } | RecordError::NotForFormat { .. } => {
             "leave this key out"
