@@ -5,6 +5,8 @@ use crate::interrupt;
 use crate::progress::CaseBar;
 use crate::render::{Presenter, refusal};
 use crate::run::Exit;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::io::ErrorKind;
 use std::ops::ControlFlow;
@@ -13,9 +15,9 @@ use teeter_report::Results;
 use teeter_run::SceneSource;
 use teeter_scenario::diagnostic::Diagnostics;
 use teeter_study::sweep::{
-    COARSE_ROWS, Ensemble, FIGURE_FILES, FILES, IDENTITY, Journal, JournalError, RESULTS, Shard, Sweep, SweepIdentity,
-    Tally, counted, ended_study, incomparable, matching_files, merge, run_cases, study_figures, study_page,
-    write_parquet, write_results,
+    COARSE_ROWS, Ensemble, FIGURE_FILES, FILES, IDENTITY, JOURNAL, Journal, JournalError, RESULTS, Shard, Sweep,
+    SweepIdentity, Tally, counted, ended_study, incomparable, matching_files, merge, run_cases, study_figures,
+    study_page, write_parquet, write_results,
 };
 use teeter_study::{StudyScene, runner};
 
@@ -173,7 +175,11 @@ fn distinct_names(folders: &[PathBuf]) -> Vec<String> {
 /// Takes the folder: of a study that continues with its rows.
 fn open(study: &Study, folder: &Path, options: &Options) -> Result<(Results, Journal), JournalError> {
     Results::spares(&FILES, folder, &study.inputs)?;
-    if options.resume && folder.join(IDENTITY).exists() {
+    let has = |file: &str| folder.join(file).exists();
+    if options.resume && !has(IDENTITY) && (has(JOURNAL) || has(RESULTS)) {
+        return Err(JournalError::NoIdentity(folder.to_owned()));
+    }
+    if options.resume && has(IDENTITY) {
         let results = Results::reopen_of(&FILES, folder)?;
         if let Some(journal) = Journal::reopen(&results, &study.identity, &study.sweep)? {
             return Ok((results, journal));
@@ -222,7 +228,7 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
         return Exit::Interrupted;
     }
     // Of all rows, those of sessions before this one as well.
-    let written = write_results(results, &study.sweep)
+    let written = write_results(results, &study.sweep, shard)
         .and_then(|()| write_parquet(results, &study.sweep))
         .and_then(|()| Tally::of(results.folder(), &study.sweep));
     match written {
@@ -321,14 +327,10 @@ pub(crate) fn merge_shards(folders: &[PathBuf], out: &Path, figure_width: f64, f
         return Exit::BadInput;
     }
     let merged = || -> Result<(bool, Results, String), JournalError> {
-        let (table, identity) = merge(folders)?;
-        let title = SweepIdentity::from_json(&identity).map(|study| study.title().to_owned()).unwrap_or_default();
+        let mut shards = merge(folders)?;
         let results = Results::create_of(&FILES, out, force)?;
-        results.write(IDENTITY, identity)?;
-        results.write(RESULTS, table)?;
-        let study = ended_study(out, "")?;
-        write_parquet(&results, &study.sweep)?;
-        Ok((study.sweep.wants_figures(), results, title))
+        shards.write(&results)?;
+        Ok((shards.sweep().wants_figures(), results, shards.title().to_owned()))
     };
     match merged() {
         Ok((figures, results, title)) => {
@@ -352,9 +354,12 @@ fn prepare(path: &Path, shard: Shard) -> Result<Study, String> {
         _ => format!("error: {name}: {error}"),
     })?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    let matches = RefCell::new(BTreeMap::new());
     let listed = |scene: &str, pattern: &str| {
         let scene = folder.join(scene);
-        matching_files(&folder, scene.parent().unwrap_or(&folder), pattern)
+        let files = matching_files(&folder, scene.parent().unwrap_or(&folder), pattern)?;
+        matches.borrow_mut().insert(pattern.to_owned(), files.clone());
+        Ok(files)
     };
     let present = |found: &Diagnostics| Presenter::new(&text).all(found);
     let sweep = Sweep::read(&text, &name, &listed).map_err(|found| present(&found))?;
@@ -370,6 +375,7 @@ fn prepare(path: &Path, shard: Shard) -> Result<Study, String> {
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let identity = SweepIdentity::new(&text, source.contents(), sweep.cases(), shard)
         .reading(source.named_contents())
+        .matching(matches.take())
         .titled(&stem);
     let named = source.files().map(|file| scene.place(file));
     let inputs = [path.to_owned(), folder.join(sweep.scene())].into_iter().chain(named).collect();

@@ -5,7 +5,7 @@ use crate::lock::FolderLock;
 use crate::page::{VTK_SERIES, is_pair_figure, is_vtk_picture};
 use crate::table::Table;
 use std::fs;
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// The files that a run may write; which of the figures, depends on its scene. They are removed in this order: no summary
@@ -301,6 +301,18 @@ impl Results {
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), ResultsError> {
         write_whole(&self.folder.join(name), content.as_ref())
     }
+
+    /// As [`Results::write`], for a file that `fill` writes piece by piece.
+    ///
+    /// # Errors
+    /// If it can't be written, or `fill` fails.
+    pub fn write_with(
+        &self,
+        name: &str,
+        fill: impl FnOnce(&mut BufWriter<fs::File>) -> io::Result<()>,
+    ) -> Result<(), ResultsError> {
+        write_pieces(&self.folder.join(name), fill)
+    }
 }
 
 impl Reserved {
@@ -342,6 +354,14 @@ impl Drop for Reserved {
 /// # Errors
 /// If it can't be written; then what was there is still there.
 pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), ResultsError> {
+    write_pieces(path, |file| file.write_all(content))
+}
+
+/// As [`write_whole`], of what `fill` writes.
+fn write_pieces(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<fs::File>) -> io::Result<()>,
+) -> Result<(), ResultsError> {
     let temporary = temporary(path);
     let written = path
         .parent()
@@ -349,7 +369,10 @@ pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), ResultsError> {
         .and_then(|()| match fs::remove_file(&temporary) {
             // Left by a run that was killed, or a link that is not to be followed.
             Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
-            _ => new_file(&temporary)?.write_all(content),
+            _ => {
+                let mut file = BufWriter::new(new_file(&temporary)?);
+                fill(&mut file).and_then(|()| file.flush())
+            }
         })
         .and_then(|()| fs::rename(&temporary, path));
     written.map_err(|source| {

@@ -3,11 +3,11 @@
 use super::axes::{Axis, Samples, grid, samples, together};
 use super::figures::{self, Wanted};
 use super::find::{self, Find};
-use super::number::WrittenNumber;
+use super::number::{WrittenNumber, in_table};
 use super::output::Output;
 use super::spec::{Node, Reader, entries};
 use crate::Setting;
-use teeter_scenario::diagnostic::Diagnostics;
+use teeter_scenario::diagnostic::{Diagnostics, printable};
 
 /// Lists the files that match a pattern (its second argument), relative to the sweep file, as the
 /// scene (its first argument, relative to the sweep file) names them; or says why not.
@@ -160,10 +160,29 @@ impl Sweep {
         let searched = self.find.iter().flat_map(|find| std::iter::once(find.key.as_str()).chain(find::COLUMNS));
         let columns: Vec<&str> = keys.iter().copied().chain(searched).chain(names.iter().copied()).collect();
         self.wanted.check(reader, &columns);
+        for (path, name) in self.wanted.of_numbers() {
+            if let Some(why) = self.without_numbers(name) {
+                let rule = format!("numbers are expected, but {why}");
+                reader.wrong(path, None, &rule, "name a key or an output that is a number in each case");
+            }
+        }
         if self.checked_cases().is_none_or(|cases| cases > MOST_CASES) {
             let rule = format!("more than {MOST_CASES} cases");
             reader.wrong("", None, &rule, "use fewer values, or random samples of the same keys");
         }
+    }
+
+    /// What the column of a key or an output holds if it has no numbers.
+    fn without_numbers(&self, name: &str) -> Option<String> {
+        let of_key = self.axes.iter().flat_map(|axis| axis.keys.iter().zip(&axis.values)).find(|(key, _)| *key == name);
+        let is_word = |value: &String| in_table(name, value).parse::<f64>().is_err();
+        if let Some(word) =
+            of_key.filter(|(_, values)| values.iter().all(is_word)).and_then(|(_, values)| values.first())
+        {
+            return Some(format!("the values of `{name}` are words, such as {}", printable(word)));
+        }
+        let output = self.outputs.iter().find(|output| output.name() == name)?;
+        output.word().map(|what| format!("the output `{name}` is {what}"))
     }
 
     /// The path of the scene file, relative to the sweep file.

@@ -1,6 +1,6 @@
 //! What decides the rows of a study: they can be continued and merged only where it is the same.
 
-use super::Shard;
+use super::{Shard, Sweep};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use teeter_report::content_hash;
@@ -19,6 +19,8 @@ pub struct SweepIdentity {
     inputs: String,
     /// The files that the scene reads, each with the beginning of its hash: what has changed is told by them.
     files: BTreeMap<String, String>,
+    /// The files that each pattern of the sweep file matches, as the scene names them: with them the values of a case are known.
+    matches: BTreeMap<String, Vec<String>>,
     cases: u64,
     shard: Shard,
 }
@@ -33,7 +35,10 @@ const MOST_NAMED: usize = 5;
 #[non_exhaustive]
 pub enum SweepIdentityError {
     /// The file doesn't hold an identity.
-    #[error("it is not a file that `teeter sweep` wrote")]
+    #[error(
+        "its sweep.json, which says of which study the rows are, isn't as `teeter sweep` wrote it: put that back, or begin anew in another \
+         folder or with --force"
+    )]
     Unreadable,
     /// Another version of the program, whose rows may differ.
     #[error("its rows are of version {then} of the program, not {now}")]
@@ -81,6 +86,7 @@ impl SweepIdentity {
             sweep: sweep.to_owned(),
             inputs,
             files: BTreeMap::new(),
+            matches: BTreeMap::new(),
             cases,
             shard,
         }
@@ -95,6 +101,23 @@ impl SweepIdentity {
         };
         let files = files.into_iter().map(|(name, bytes)| (name.to_owned(), digits(bytes))).collect();
         Self { files, ..self }
+    }
+
+    /// The same study with the files that its patterns match.
+    #[must_use]
+    pub fn matching(self, matches: BTreeMap<String, Vec<String>>) -> Self {
+        Self { matches, ..self }
+    }
+
+    /// The study as its sweep file describes it, with the files that its patterns matched; they need not be here.
+    ///
+    /// # Errors
+    /// If the sweep file can't be read.
+    pub fn study(&self) -> Result<Sweep, SweepIdentityError> {
+        // An older version tells no files: then a pattern stands for them.
+        let matched =
+            |_: &str, pattern: &str| Ok(self.matches.get(pattern).cloned().unwrap_or_else(|| vec![pattern.to_owned()]));
+        Sweep::read(&self.sweep, IDENTITY, &matched).map_err(|_| SweepIdentityError::Unreadable)
     }
 
     /// The same study with a title.
@@ -136,10 +159,10 @@ impl SweepIdentity {
     /// As the text of its file.
     #[must_use]
     pub fn to_json(&self) -> String {
-        let Self { title, program, sweep, inputs, files, cases, shard } = self;
+        let Self { title, program, sweep, inputs, files, matches, cases, shard } = self;
         let value = json!({
             "title": title, "program": program, "cases": cases, "shard": shard.to_string(), "inputs_sha256": inputs, "files": files,
-            "sweep": sweep,
+            "matches": matches, "sweep": sweep,
         });
         format!("{value:#}\n")
     }
@@ -159,6 +182,7 @@ impl SweepIdentity {
                 inputs: text("inputs_sha256")?,
                 // Older versions don't write them.
                 files: value.get("files").and_then(Value::as_object).map(files_of).unwrap_or_default(),
+                matches: value.get("matches").and_then(Value::as_object).map(matches_of).unwrap_or_default(),
                 cases: value.get("cases")?.as_u64()?,
                 shard: text("shard")?.parse().ok()?,
             })
@@ -225,6 +249,14 @@ fn files_of(map: &Map<String, Value>) -> BTreeMap<String, String> {
     map.iter().filter_map(|(name, hash)| Some((name.clone(), hash.as_str()?.to_owned()))).collect()
 }
 
+/// Lists of files by their patterns.
+fn matches_of(map: &Map<String, Value>) -> BTreeMap<String, Vec<String>> {
+    let names = |list: &Value| -> Option<Vec<String>> {
+        list.as_array()?.iter().map(|name| name.as_str().map(str::to_owned)).collect()
+    };
+    map.iter().filter_map(|(pattern, list)| Some((pattern.clone(), names(list)?))).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -253,5 +285,15 @@ mod tests {
         let older = SweepIdentity { files: BTreeMap::new(), ..reading(&[("a.AT2", b"1")], 1) };
         assert_eq!(told(older), "the files that its patterns match have changed since: cases then: 1, now: 3");
         assert_eq!(SweepIdentity::from_json("{}"), Err(SweepIdentityError::Unreadable));
+    }
+
+    #[test]
+    fn it_knows_the_values_of_files_that_are_no_longer_there() {
+        let text = "scene = \"s.toml\"\n[zip]\nground.motion.x.record = { files = \"*.AT2\" }\nground.motion.x.scale = [1, 2]\n";
+        let files = vec!["a.AT2".to_owned(), "b.AT2".to_owned()];
+        let matches = BTreeMap::from([("*.AT2".to_owned(), files)]);
+        let identity = SweepIdentity::new(text, [], 2, Shard::ALL).matching(matches);
+        let read = SweepIdentity::from_json(&identity.to_json()).unwrap();
+        assert_eq!(read.study().unwrap().case(1)[0].1, "b.AT2");
     }
 }

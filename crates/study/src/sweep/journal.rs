@@ -4,10 +4,11 @@
 //! at most the row that is being written. At the end they are sorted into `results.csv`.
 
 use super::figures::{Ensemble, FIGURE_FILES, StudyTable, TableError};
-use super::{IDENTITY, Sweep, SweepIdentity, SweepIdentityError};
+use super::rows::{RowFile, Rows, each_line, io_error};
+use super::{IDENTITY, Shard, Sweep, SweepIdentity, SweepIdentityError};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use teeter_report::{Results, ResultsError};
 
@@ -64,6 +65,31 @@ pub enum JournalError {
         /// The folder.
         folder: PathBuf,
     },
+    /// Rows of a study that nobody knows.
+    #[error(
+        "{}: there are rows in it, but no sweep.json, which says of which study they are: put it back, or begin anew in another folder or with \
+         --force",
+        .0.display()
+    )]
+    NoIdentity(PathBuf),
+    /// A row whose case has another value of a key.
+    #[error(
+        "{}: the row of case {case} has {key} = {found}, but the study gives it {wanted}: delete that line, and --resume of that study runs \
+         the case again",
+        path.display()
+    )]
+    AlteredKey {
+        /// The file.
+        path: PathBuf,
+        /// The case.
+        case: u64,
+        /// The key.
+        key: String,
+        /// Its value in the row.
+        found: String,
+        /// That of the case.
+        wanted: String,
+    },
     /// A shard that has not ended.
     #[error("{}: {missing} of its cases are still to do; continue it with --resume", folder.display())]
     Unfinished {
@@ -105,10 +131,6 @@ pub enum JournalError {
         /// The other folder.
         second: PathBuf,
     },
-}
-
-fn io_error(path: &Path) -> impl FnOnce(io::Error) -> JournalError + '_ {
-    |source| JournalError::Io { path: path.to_owned(), source }
 }
 
 /// The journal of a study that runs.
@@ -176,6 +198,32 @@ impl Journal {
         let foreign = |source| JournalError::Foreign { folder: folder.to_owned(), source };
         identity.admit(&SweepIdentity::from_json(&text).map_err(foreign)?).map_err(foreign)?;
         let (ended, path) = (folder.join(RESULTS), folder.join(JOURNAL));
+        let rows = Rows::new(sweep, sweep.cases());
+        let (mut done, mut rejected, mut whole) = (Done::default(), 0, 0);
+        let shard = identity.shard();
+        let case_of = |line: &[u8], file: &Path| -> Result<Option<u64>, JournalError> {
+            Ok(rows.case_of(line, file)?.filter(|case| shard.place(*case).is_some()))
+        };
+        // Nothing is changed before all rows are known to be those of the study.
+        let place = if !path.exists() && ended.exists() { &ended } else { &path };
+        if place.exists() {
+            each_line(place, |at, line| {
+                if !line.ends_with(b"\n") {
+                    return Ok(());
+                }
+                whole = at + line.len() as u64;
+                // Rows of other columns can't stand in one table with ours.
+                if at == 0 {
+                    let other = || JournalError::Table { path: place.clone(), source: TableError::OtherColumns };
+                    return if line == rows.header().as_bytes() { Ok(()) } else { Err(other()) };
+                }
+                match case_of(line, place)? {
+                    Some(case) => done.insert(case),
+                    None => rejected += 1,
+                }
+                Ok(())
+            })?;
+        }
         // Nothing but `results.csv` of an ended study says what is in it.
         match fs::remove_file(folder.join(PARQUET)) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => {
@@ -183,36 +231,23 @@ impl Journal {
             }
             _ => {}
         }
-        if !path.exists() && ended.exists() {
+        if *place == ended {
             fs::rename(&ended, &path).map_err(io_error(&ended))?;
         }
-        if !path.exists() {
-            fs::write(&path, sweep.header()).map_err(io_error(&path))?;
-        }
-        let bytes = fs::read(&path).map_err(io_error(&path))?;
-        // Rows of other columns can't stand in one table with ours.
-        let header = bytes.split_inclusive(|&byte| byte == b'\n').next().unwrap_or_default();
-        if header.ends_with(b"\n") && header != sweep.header().as_bytes() {
-            return Err(JournalError::Table { path, source: TableError::OtherColumns });
-        }
-        let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
-        let columns = cells_of(&sweep.header()).unwrap_or(0);
-        let (mut done, mut rejected, mut rows) = (Done::default(), 0, Vec::new());
-        for line in bytes[..whole].split_inclusive(|&byte| byte == b'\n').skip(1) {
-            match row_of(line, columns).filter(|&case| case < sweep.cases()) {
-                Some(case) => {
-                    done.insert(case);
-                    rows.extend_from_slice(line);
-                }
-                None => rejected += 1,
-            }
-        }
-        if whole == 0 || rejected > 0 {
-            results.write(JOURNAL, [sweep.header().as_bytes(), &rows].concat())?;
+        if whole == 0 {
+            results.write(JOURNAL, rows.header())?;
+        } else if rejected > 0 {
+            results.write_with(JOURNAL, |out| {
+                let copied = each_line(&path, |at, line| match at == 0 || case_of(line, &path)?.is_some() {
+                    true => out.write_all(line).map_err(io_error(&path)),
+                    false => Ok(()),
+                });
+                copied.map_err(io::Error::other)
+            })?;
         }
         let mut file = File::options().write(true).open(&path).map_err(io_error(&path))?;
         if whole > 0 && rejected == 0 {
-            file.set_len(whole as u64).map_err(io_error(&path))?;
+            file.set_len(whole).map_err(io_error(&path))?;
         }
         file.seek(SeekFrom::End(0)).map_err(io_error(&path))?;
         Ok(Some(Self { path, file, done, rejected }))
@@ -252,51 +287,22 @@ impl Journal {
     }
 }
 
-/// The case of a line with its end, if it is a row of so many columns.
-fn row_of(line: &[u8], columns: usize) -> Option<u64> {
-    let line = std::str::from_utf8(line).ok()?;
-    number_of(line).filter(|_| cells_of(line) == Some(columns))
-}
-
-/// The number of cells of a line; `None` if it is empty.
-fn cells_of(line: &str) -> Option<usize> {
-    let mut record = csv::StringRecord::new();
-    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(line.as_bytes());
-    reader.read_record(&mut record).ok()?.then_some(record.len())
-}
-
-/// The case of a row; `None` for the header.
-fn number_of(line: &str) -> Option<u64> {
-    line.split(',').next()?.parse().ok()
-}
-
-/// Sorts rows by their case. A case that ran twice, as after a kill between its row and the next
-/// start, keeps its first row. A last row without its end was cut off: it is none.
-fn sorted<'t>(texts: impl Iterator<Item = &'t str>) -> Vec<(u64, &'t str)> {
-    let mut rows: Vec<(u64, &str)> = texts
-        .flat_map(|text| text.split_inclusive('\n'))
-        .filter(|line| line.ends_with('\n'))
-        .filter_map(|line| Some((number_of(line)?, line)))
-        .collect();
-    rows.sort_by_key(|(case, _)| *case);
-    rows.dedup_by_key(|(case, _)| *case);
-    rows
-}
-
 /// Writes `results.csv` from the journal of a folder, whose study has all its rows, and removes the
 /// journal.
 ///
 /// # Errors
 /// If a file can't be read or written.
-pub fn write_results(results: &Results, sweep: &Sweep) -> Result<(), JournalError> {
-    let path = results.folder().join(JOURNAL);
-    let text = fs::read_to_string(&path).map_err(io_error(&path))?;
-    let mut rows = sorted(std::iter::once(text.as_str()));
-    rows.retain(|(case, _)| *case < sweep.cases());
-    results.write(RESULTS, table(&sweep.header(), &rows))?;
+pub fn write_results(results: &Results, sweep: &Sweep, shard: Shard) -> Result<(), JournalError> {
+    let rows = Rows::new(sweep, sweep.cases());
+    let mut journal = RowFile::open(results.folder().join(JOURNAL), &rows, shard)?;
+    results.write_with(RESULTS, |out| {
+        out.write_all(rows.header().as_bytes())?;
+        shard.cases(sweep.cases()).try_for_each(|case| journal.copy(case, out))
+    })?;
     // On the disk before its only other copy goes: a power cut must not take a study.
     let written = results.folder().join(RESULTS);
     File::open(&written).and_then(|file| file.sync_all()).map_err(io_error(&written))?;
+    drop(journal);
     Ok(results.remove(JOURNAL)?)
 }
 
@@ -309,21 +315,25 @@ pub fn write_parquet(results: &Results, sweep: &Sweep) -> Result<(), JournalErro
     #[cfg(feature = "parquet")]
     {
         let path = results.folder().join(RESULTS);
-        let text = fs::read_to_string(&path).map_err(io_error(&path))?;
-        results.write(PARQUET, super::parquet_table(&text, sweep)?)?;
-        Ok(())
+        let mut why = None;
+        let written = results.write_with(PARQUET, |out| {
+            let written = super::parquet_table(|| File::open(&path), sweep, out);
+            written.map_err(|error| {
+                let text = error.to_string();
+                why = Some(error);
+                io::Error::other(text)
+            })
+        });
+        match why {
+            Some(error) => Err(error.into()),
+            None => Ok(written?),
+        }
     }
     #[cfg(not(feature = "parquet"))]
     {
         let _ = sweep;
         Ok(results.remove(PARQUET)?)
     }
-}
-
-fn table(header: &str, rows: &[(u64, &str)]) -> String {
-    let mut all = header.to_owned();
-    rows.iter().for_each(|(_, line)| all.push_str(line));
-    all
 }
 
 /// What a folder says of its study.
@@ -335,61 +345,90 @@ fn identity_text(folder: &Path) -> Result<String, JournalError> {
     })
 }
 
-/// Puts the results of all shards of a study together: the text of `results.csv` and that of the
-/// identity of the whole study. The bytes are those of one run of all cases.
+/// The shards of a study, which are put together to the bytes of one run of all cases.
+#[derive(Debug)]
+pub struct Merged {
+    study: SweepIdentity,
+    sweep: Sweep,
+    /// In the order of the shards.
+    files: Vec<RowFile>,
+}
+
+/// Opens the results of all shards of a study.
 ///
 /// # Errors
-/// If a folder holds no study or another one, a shard is missing, twice there or unfinished.
-pub fn merge(folders: &[PathBuf]) -> Result<(String, String), JournalError> {
-    let mut shards: BTreeMap<u64, &PathBuf> = BTreeMap::new();
-    let mut study: Option<SweepIdentity> = None;
-    let mut texts = Vec::new();
+/// If a folder holds no study or another one, a shard is missing, twice there or unfinished, or a row isn't that of its case.
+pub fn merge(folders: &[PathBuf]) -> Result<Merged, JournalError> {
+    let mut shards: BTreeMap<u64, (&PathBuf, RowFile)> = BTreeMap::new();
+    let mut known: Option<(SweepIdentity, Sweep)> = None;
     for folder in folders {
         let foreign = |source| JournalError::Foreign { folder: folder.clone(), source };
         let identity = SweepIdentity::from_json(&identity_text(folder)?).map_err(foreign)?;
-        if let Some(study) = &study {
-            study.admit_study(&identity).map_err(foreign)?;
-            if study.shard().of() != identity.shard().of() {
-                let source = SweepIdentityError::Shard { then: identity.shard(), now: study.shard() };
-                return Err(foreign(source));
+        let (study, sweep) = match &known {
+            Some((study, sweep)) => (study, sweep),
+            None => {
+                let sweep = identity.study().map_err(foreign)?;
+                let (study, sweep) = known.insert((identity.clone(), sweep));
+                (&*study, &*sweep)
             }
-        }
+        };
+        study.admit_study(&identity).map_err(foreign)?;
         let shard = identity.shard();
-        if let Some(first) = shards.insert(shard.number(), folder) {
-            return Err(JournalError::Twice { shard, first: first.clone(), second: folder.clone() });
+        if study.shard().of() != shard.of() {
+            return Err(foreign(SweepIdentityError::Shard { then: shard, now: study.shard() }));
+        }
+        if let Some((first, _)) = shards.get(&shard.number()) {
+            return Err(JournalError::Twice { shard, first: (*first).clone(), second: folder.clone() });
         }
         let (ended, running) = (folder.join(RESULTS), folder.join(JOURNAL));
         let place = if ended.exists() { ended } else { running };
-        let rows = fs::read_to_string(&place).map_err(io_error(&place))?;
-        let own = sorted(std::iter::once(rows.as_str()));
-        let (expected, there) = (shard.count(identity.cases()), own.len() as u64);
-        let header = |text: &str| text.lines().next().unwrap_or_default().to_owned();
-        if texts.first().is_some_and(|first: &String| header(first) != header(&rows)) {
-            return Err(JournalError::Table { path: place, source: TableError::OtherColumns });
+        let rows = RowFile::open(place, &Rows::new(sweep, study.cases()), shard)?;
+        if rows.missing() > 0 {
+            return Err(JournalError::Unfinished { folder: folder.clone(), missing: rows.missing() });
         }
-        if there < expected {
-            return Err(JournalError::Unfinished { folder: folder.clone(), missing: expected - there });
-        }
-        // The rows may have been copied from another shard, or edited.
-        let of_shard = shard.cases(identity.cases());
-        if own.iter().map(|(case, _)| *case).ne(of_shard) {
-            return Err(JournalError::OtherRows { path: place, shard });
-        }
-        let first = rows.split_inclusive('\n').next().unwrap_or_default();
-        StudyTable::read(&table(first, &own)).map_err(|source| JournalError::Table { path: place, source })?;
-        texts.push(rows);
-        study.get_or_insert(identity);
+        shards.insert(shard.number(), (folder, rows));
     }
-    let Some(study) = study else { return Err(JournalError::MissingShards("all".to_owned())) };
+    let Some((study, sweep)) = known else { return Err(JournalError::MissingShards("all".to_owned())) };
     let of = study.shard().of();
     let missing: Vec<String> =
         (1..=of).filter(|number| !shards.contains_key(number)).map(|number| format!("{number}/{of}")).collect();
     if !missing.is_empty() {
         return Err(JournalError::MissingShards(missing.join(", ")));
     }
-    // The same sweep has the same columns.
-    let header = texts.first().and_then(|text| text.split_inclusive('\n').next()).unwrap_or_default();
-    Ok((table(header, &sorted(texts.iter().map(String::as_str))), study.as_whole().to_json()))
+    let files = shards.into_values().map(|(_, rows)| rows).collect();
+    Ok(Merged { study: study.as_whole(), sweep, files })
+}
+
+impl Merged {
+    /// The study.
+    #[must_use]
+    pub fn sweep(&self) -> &Sweep {
+        &self.sweep
+    }
+
+    /// Its title; empty if it has none.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        self.study.title()
+    }
+
+    /// Writes `sweep.json`, `results.csv` and `results.parquet`.
+    ///
+    /// # Errors
+    /// If a file can't be read or written.
+    pub fn write(&mut self, results: &Results) -> Result<(), JournalError> {
+        results.write(IDENTITY, self.study.to_json())?;
+        let Self { study, sweep, files } = self;
+        let of = files.len() as u64;
+        results.write_with(RESULTS, |out| {
+            out.write_all(sweep.header().as_bytes())?;
+            (0..study.cases()).try_for_each(|case| match files.get_mut(usize::try_from(case % of).unwrap_or(0)) {
+                Some(rows) => rows.copy(case, out),
+                None => Ok(()),
+            })
+        })?;
+        write_parquet(results, sweep)
+    }
 }
 
 /// The study in a folder that has ended, under this name in figures.
@@ -399,12 +438,10 @@ pub fn merge(folders: &[PathBuf]) -> Result<(String, String), JournalError> {
 pub fn ended_study(folder: &Path, name: &str) -> Result<Ensemble, JournalError> {
     let foreign = |source| JournalError::Foreign { folder: folder.to_owned(), source };
     let identity = SweepIdentity::from_json(&identity_text(folder)?).map_err(foreign)?;
-    // The values are in the table; the files that a pattern once matched need not be here.
-    let as_written = |_: &str, pattern: &str| Ok(vec![pattern.to_owned()]);
-    let sweep =
-        Sweep::read(identity.sweep(), IDENTITY, &as_written).map_err(|_| foreign(SweepIdentityError::Unreadable))?;
+    let sweep = identity.study().map_err(foreign)?;
     let path = folder.join(RESULTS);
-    let rows = fs::read_to_string(&path).map_err(io_error(&path))?;
-    let table = StudyTable::read(&rows).map_err(|source| JournalError::Table { path, source })?;
+    let file = File::open(&path).map_err(io_error(&path))?;
+    let table =
+        StudyTable::read(BufReader::new(file), &sweep).map_err(|source| JournalError::Table { path, source })?;
     Ok(Ensemble { name: name.to_owned(), sweep, table })
 }

@@ -21,6 +21,7 @@ pub(crate) mod number;
 mod output;
 #[cfg(feature = "parquet")]
 mod parquet;
+mod rows;
 pub(crate) mod sample;
 mod shard;
 pub(crate) mod spec;
@@ -33,7 +34,7 @@ pub use figures::{
 pub use file::{FilesOf, Sweep};
 pub use identity::{IDENTITY, SweepIdentity, SweepIdentityError};
 pub use journal::{
-    FILES, JOURNAL, Journal, JournalError, PARQUET, RESULTS, ended_study, merge, write_parquet, write_results,
+    FILES, JOURNAL, Journal, JournalError, Merged, PARQUET, RESULTS, ended_study, merge, write_parquet, write_results,
 };
 pub use listing::matching_files;
 pub use output::Output;

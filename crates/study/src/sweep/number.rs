@@ -46,12 +46,27 @@ pub(crate) fn in_table(key: &str, written: &str) -> String {
     let number = match teeter_scenario::keys::find(key) {
         Some(PathTarget::Key(_, found)) => match found.kind {
             Kind::Quantity(dimension, _) => quantity(dimension),
-            Kind::Number(_) | Kind::Integer { .. } => written.trim().parse().ok(),
+            Kind::Number(_) => written.trim().parse().ok(),
+            // The key takes no `10.0`.
+            Kind::Integer { .. } => {
+                return whole(written).map_or_else(|| written.to_owned(), |value| value.to_string());
+            }
             _ => None,
         },
         _ => None,
     };
     number.map_or_else(|| written.to_owned(), |value| format!("{value:?}"))
+}
+
+/// The whole number that a text is, as TOML writes it.
+fn whole(written: &str) -> Option<i64> {
+    written.trim().replace('_', "").parse().ok()
+}
+
+/// Whether a key takes whole numbers only.
+#[cfg(feature = "parquet")]
+pub(crate) fn is_whole(key: &str) -> bool {
+    matches!(teeter_scenario::keys::find(key), Some(PathTarget::Key(_, found)) if matches!(found.kind, Kind::Integer { .. }))
 }
 
 #[cfg(test)]
@@ -79,5 +94,13 @@ mod tests {
         assert_eq!(in_table("block.b.width", "36 cm"), "0.36");
         assert_eq!(in_table("time.scheme", "event-driven"), "event-driven");
         assert_eq!(in_table("contact.feet.friction", "0.5"), "0.5");
+        assert_eq!(in_table("contact.feet.friction", "1"), "1.0");
+    }
+
+    #[test]
+    fn a_table_holds_whole_numbers_where_the_key_takes_nothing_else() {
+        for (written, cell) in [("10", "10"), (" 20 ", "20"), ("1_000", "1000"), ("2.5", "2.5"), ("10.0", "10.0")] {
+            assert_eq!(in_table("beam.table.elements", written), cell);
+        }
     }
 }

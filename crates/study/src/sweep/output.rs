@@ -45,6 +45,9 @@ pub struct Output {
 /// An output that may be off by more than this share of the largest value of its column has too few rows.
 const COARSE: f64 = 0.01;
 
+/// What a summary has in words.
+const WORDS_OF_SUMMARY: [&str; 6] = ["title", "version", "scheme", "headline", "stopped_by", "ended"];
+
 const WORDS: [&str; 7] = ["max", "min", "max_abs", "final", "at", "spectral_acceleration", "of"];
 
 impl Output {
@@ -78,6 +81,15 @@ impl Output {
         match &self.origin {
             Origin::Summary(path) => Some(path),
             Origin::Column { .. } | Origin::Spectral { .. } | Origin::Overturned => None,
+        }
+    }
+
+    /// What it is, if it is no number in any case.
+    pub(crate) fn word(&self) -> Option<&'static str> {
+        match &self.origin {
+            Origin::Overturned => Some("true or false"),
+            Origin::Summary(path) if WORDS_OF_SUMMARY.contains(&path.as_str()) => Some("a text"),
+            Origin::Summary(_) | Origin::Column { .. } | Origin::Spectral { .. } => None,
         }
     }
 
@@ -271,8 +283,12 @@ fn text_of(value: Cow<'_, Value>) -> String {
 
 /// A text as a cell of a table, in one line.
 pub(crate) fn quoted(text: &str) -> String {
-    let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    crate::write::quoted(&line)
+    crate::write::quoted(&one_line(text))
+}
+
+/// A text in one line.
+pub(crate) fn one_line(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
 /// Columns of a trajectory, by the names that are wanted.

@@ -1,10 +1,11 @@
 //! `results.parquet`: the table of a study with the types of its columns.
 //!
-//! It is made from the text of `results.csv` and from nothing else, so that equal tables give equal
-//! files, however many shards they were put together from.
+//! It is made from `results.csv` and from nothing else, so that equal tables give equal files, however many shards they were put
+//! together from. The table is read twice, a row group at a time.
 
 use super::Sweep;
 use super::find::COLUMNS;
+use super::number::is_whole;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as PhysicalType};
 use parquet::column::writer::ColumnWriter;
 use parquet::data_type::ByteArray;
@@ -13,14 +14,16 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::Type;
+use std::io::{self, Read, Write};
 use std::sync::Arc;
 use teeter_scenario::keys::{Kind, PathTarget};
 
 /// The key of the file's metadata under which the units are: a JSON object of the names of columns
 /// and their units, in the notation of scenes.
 const UNITS: &str = "units";
-/// Rows of a row group: what is held in memory beside the text.
+/// Most rows of a row group, and the bytes of its cells from which on it takes none: what is held in memory.
 const ROWS: usize = 1 << 16;
+const BYTES: usize = 1 << 22;
 
 /// Why there is no Parquet file.
 #[derive(Debug, thiserror::Error)]
@@ -32,6 +35,9 @@ pub enum ParquetTableError {
     /// It can't be encoded.
     #[error("the table can't be written as Parquet: {0}")]
     Parquet(#[from] ParquetError),
+    /// The table can't be opened.
+    #[error("the table can't be read: {0}")]
+    Io(#[from] io::Error),
 }
 
 /// What the cells of a column are.
@@ -54,6 +60,17 @@ impl CellType {
             _ if name == changes || name == runs => Some(Self::Whole),
             _ if name == at_low || name == at_high => Some(Self::Bool),
             _ => None,
+        }
+    }
+
+    /// The type of a column whose cells are of the type `seen`, and whole numbers if `whole`.
+    fn of_column(name: &str, seen: Option<Self>, whole: bool, sweep: &Sweep) -> Self {
+        let key = key_of(name, sweep);
+        // An output is what it is by name only.
+        let is_key = !sweep.outputs().iter().any(|output| output.name() == name);
+        match Self::of_name(name).or(seen).unwrap_or(Self::Double) {
+            Self::Double if whole && is_key && is_whole(key) => Self::Whole,
+            found => found,
         }
     }
 
@@ -86,28 +103,32 @@ fn number(cell: &str) -> Option<f64> {
     if digits.starts_with(|c: char| c.is_ascii_digit() || c == '.') { cell.parse().ok() } else { None }
 }
 
-/// The bytes of `results.parquet` for the text of `results.csv`.
+/// Writes `results.parquet` to `out`; `open` opens `results.csv`, more than once.
 ///
 /// `case`, numbers of steps, changes and runs are whole numbers, `find.at_low` and `find.at_high`
-/// true or false, `status`, `warnings` and `error` texts. A column of a key or an output holds doubles if each of
+/// true or false, `status`, `warnings` and `error` texts. A key that takes whole numbers only has whole numbers. A column of another key or an output holds doubles if each of
 /// its cells is a number, true or false if each is one of these, else texts; an empty cell is null, a
 /// column without any cell one of doubles. The metadata have the units of columns under `units`.
 ///
 /// # Errors
 /// If the text is no table.
-pub fn parquet_table(text: &str, sweep: &Sweep) -> Result<Vec<u8>, ParquetTableError> {
-    let mut reader = csv::Reader::from_reader(text.as_bytes());
+pub fn parquet_table<R: Read>(
+    open: impl Fn() -> io::Result<R>,
+    sweep: &Sweep,
+    out: impl Write + Send,
+) -> Result<(), ParquetTableError> {
+    let mut reader = csv::Reader::from_reader(open()?);
     let names: Vec<String> = reader.headers()?.iter().map(str::to_owned).collect();
-    let mut seen: Vec<Option<CellType>> = vec![None; names.len()];
+    let mut seen: Vec<(Option<CellType>, bool)> = vec![(None, true); names.len()];
     let mut record = csv::StringRecord::new();
     while reader.read_record(&mut record)? {
-        seen.iter_mut().zip(&record).for_each(|(seen, cell)| *seen = CellType::widened(*seen, cell));
+        seen.iter_mut().zip(&record).for_each(|((seen, whole), cell)| {
+            *seen = CellType::widened(*seen, cell);
+            *whole &= cell.is_empty() || cell.parse::<i64>().is_ok();
+        });
     }
-    let types: Vec<CellType> = names
-        .iter()
-        .zip(seen)
-        .map(|(name, seen)| CellType::of_name(name).or(seen).unwrap_or(CellType::Double))
-        .collect();
+    let types: Vec<CellType> =
+        names.iter().zip(seen).map(|(name, (seen, whole))| CellType::of_column(name, seen, whole, sweep)).collect();
     let fields: Result<Vec<_>, _> =
         names.iter().zip(&types).map(|(name, kind)| kind.column(name).map(Arc::new)).collect();
     let schema = Arc::new(Type::group_type_builder("study").with_fields(fields?).build()?);
@@ -117,28 +138,31 @@ pub fn parquet_table(text: &str, sweep: &Sweep) -> Result<Vec<u8>, ParquetTableE
         .set_compression(Compression::SNAPPY)
         .set_key_value_metadata(Some(vec![KeyValue::new(UNITS.to_owned(), units)]))
         .build();
-    let mut writer = SerializedFileWriter::new(Vec::new(), schema, Arc::new(properties))?;
-    let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let mut rows = Vec::new();
+    let mut writer = SerializedFileWriter::new(out, schema, Arc::new(properties))?;
+    let mut reader = csv::Reader::from_reader(open()?);
+    let (mut rows, mut bytes) = (Vec::new(), 0);
     loop {
         let more = reader.read_record(&mut record)?;
         if more {
+            bytes += record.as_slice().len();
             rows.push(record.clone());
         }
-        if rows.len() == ROWS || (!more && !rows.is_empty()) {
+        if rows.len() == ROWS || bytes >= BYTES || (!more && !rows.is_empty()) {
             let mut group = writer.next_row_group()?;
             write_rows(&mut group, &rows, types.len())?;
             group.close()?;
             rows.clear();
+            bytes = 0;
         }
         if !more {
-            return Ok(writer.into_inner()?);
+            writer.close()?;
+            return Ok(());
         }
     }
 }
 
-fn write_rows(
-    group: &mut SerializedRowGroupWriter<'_, Vec<u8>>,
+fn write_rows<W: Write + Send>(
+    group: &mut SerializedRowGroupWriter<'_, W>,
     rows: &[csv::StringRecord],
     columns: usize,
 ) -> Result<(), ParquetError> {
@@ -188,13 +212,18 @@ fn yes_or_no(cell: &str) -> Option<bool> {
     }
 }
 
+/// The key whose values a column has: those beside the searched ones are of the same key.
+fn key_of<'n>(name: &'n str, sweep: &'n Sweep) -> &'n str {
+    match sweep.find() {
+        Some(find) if name == COLUMNS[0] => find.key.as_str(),
+        _ => name,
+    }
+}
+
 /// The unit of a column, where it is known: that of a key, the searched one included, or of the
 /// column of the trajectory that an output reduces.
 fn unit(name: &str, sweep: &Sweep) -> Option<String> {
-    let key = match sweep.find() {
-        Some(find) if name == COLUMNS[0] => find.key.as_str(),
-        _ => name,
-    };
+    let key = key_of(name, sweep);
     if let Some(output) = sweep.outputs().iter().find(|output| output.name() == name) {
         if output.spectrum_of().is_some() {
             return Some("m/s^2".to_owned());
@@ -219,10 +248,16 @@ mod tests {
     const SWEEP: &str = "scene = \"s.toml\"\n[grid]\nblock.b.tilt = [\"1 deg\", \"2 deg\"]\n\
         time.scheme = [\"moreau-jean\"]\n[outputs]\nlargest = { max = \"b.vx\" }\nover = \"verdict.0.what\"\n";
 
+    fn bytes_of(text: &str, sweep: &Sweep) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        parquet_table(|| Ok(text.as_bytes()), sweep, &mut bytes).unwrap();
+        bytes
+    }
+
     fn fields(text: &str) -> (Vec<Vec<Field>>, String) {
         let sweep = Sweep::read(SWEEP, "sweep.toml", &|_, _| Ok(Vec::new())).unwrap();
-        let bytes = parquet_table(text, &sweep).unwrap();
-        assert_eq!(bytes, parquet_table(text, &sweep).unwrap());
+        let bytes = bytes_of(text, &sweep);
+        assert_eq!(bytes, bytes_of(text, &sweep));
         let reader = SerializedFileReader::new(bytes::Bytes::from(bytes)).unwrap();
         let metadata = reader.metadata().file_metadata().key_value_metadata().unwrap();
         let units = metadata.iter().find(|entry| entry.key == UNITS).unwrap().value.clone().unwrap();
@@ -258,11 +293,29 @@ mod tests {
     }
 
     #[test]
+    fn keys_that_take_whole_numbers_only_have_whole_numbers() {
+        let sweep = "scene = \"s.toml\"\n[grid]\nbeam.b.elements = [10, 20]\ncontact.c.friction = [1, 2]\n[outputs]\nn = \"impact_count\"\n";
+        let sweep = Sweep::read(sweep, "sweep.toml", &|_, _| Ok(Vec::new())).unwrap();
+        let first = |cell: &str| {
+            let text = format!("case,beam.b.elements,contact.c.friction,n,status\n0,{cell},1.0,3,complete\n");
+            let reader = SerializedFileReader::new(bytes::Bytes::from(bytes_of(&text, &sweep))).unwrap();
+            let row = reader.get_row_iter(None).unwrap().next().unwrap().unwrap();
+            row.into_columns().into_iter().skip(1).take(3).map(|(_, field)| field).collect::<Vec<_>>()
+        };
+        assert_eq!(first("10"), [Field::Long(10), Field::Double(1.0), Field::Double(3.0)]);
+        assert_eq!(first("2.5")[0], Field::Double(2.5), "a case that was refused");
+    }
+
+    #[test]
     fn row_groups_hold_all_rows_and_a_table_without_rows_is_one() {
         let header = "case,status\n";
         let text: String = (0..=ROWS).map(|k| format!("{k},complete\n")).collect();
         let (rows, _) = fields(&format!("{header}{text}"));
         assert_eq!((rows.len(), &rows[ROWS][0]), (ROWS + 1, &Field::Long(ROWS as i64)));
         assert!(fields(header).0.is_empty());
+        // Rows of many bytes make more groups.
+        let long = "x".repeat(BYTES / 4);
+        let text: String = (0..10).map(|k| format!("{k},{long}\n")).collect();
+        assert_eq!(fields(&format!("case,error\n{text}")).0.len(), 10);
     }
 }

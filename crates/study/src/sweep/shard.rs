@@ -65,6 +65,13 @@ impl Shard {
         total.saturating_sub(self.number - 1).div_ceil(self.of)
     }
 
+    /// How many of its cases come before this one; `None` for a case of another shard.
+    #[must_use]
+    pub fn place(self, case: u64) -> Option<u64> {
+        let after = case.checked_sub(self.number - 1)?;
+        after.is_multiple_of(self.of).then(|| after / self.of)
+    }
+
     /// The cases of a study of so many, in ascending order.
     pub fn cases(self, total: u64) -> impl Iterator<Item = u64> {
         let step = usize::try_from(self.of).unwrap_or(usize::MAX);
@@ -100,6 +107,10 @@ mod tests {
             assert_eq!(all, (0..17).collect::<Vec<_>>());
             let shards = (1..=of).map(|k| Shard::new(k, of).unwrap());
             assert!(shards.clone().all(|shard| shard.count(17) == shard.cases(17).count() as u64));
+            for shard in shards {
+                let places: Vec<u64> = (0..17).filter_map(|case| shard.place(case)).collect();
+                assert_eq!(places, (0..shard.count(17)).collect::<Vec<_>>());
+            }
             assert_eq!(Shard::new(of, of).unwrap().count(0), 0);
         }
     }

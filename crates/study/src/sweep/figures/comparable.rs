@@ -127,7 +127,7 @@ mod tests {
              end = {{ final = \"a.phi\" }}\nlast = {{ final = \"b.phi\" }}\nmost = {{ max_abs = \"a.omega\" }}\n{more}"
         );
         let sweep = Sweep::read(&text, "f", &|_, _| Err("none".to_owned())).unwrap();
-        let table = StudyTable::read("case,status\n0,complete\n").unwrap();
+        let table = StudyTable::read(&b"case,status\n0,complete\n"[..], &sweep).unwrap();
         Ensemble { name: name.to_owned(), sweep, table }
     }
 

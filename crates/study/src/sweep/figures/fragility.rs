@@ -1,5 +1,6 @@
 //! Fragility curves.
 
+use super::super::Sweep;
 use super::super::criterion::Criterion;
 use super::super::spec::{Node, Reader, entries};
 use super::label::{common, label};
@@ -76,6 +77,18 @@ impl Fragility {
         Some(Self { event, intensities, labels })
     }
 
+    /// The keys whose values tell the groups of cases apart that aren't independent.
+    pub(super) fn grouping_keys<'s>(&self, sweep: &'s Sweep) -> Vec<&'s str> {
+        let keys = sweep.keys();
+        // Over an output each case has its own intensity, and runs of one record belong together however
+        // it is scaled.
+        let scales = |key: &str| is_size(key) || self.intensities.iter().any(|name| name == key);
+        // Of cases that differ in other properties, too, those under one record are still not independent.
+        let by_record = keys.iter().any(|key| is_record(key));
+        let tells = |key: &&str| if by_record { is_record(key) } else { !scales(key) };
+        keys.into_iter().filter(tells).collect()
+    }
+
     fn label(&self, place: usize, study: &Ensemble) -> String {
         let column = self.intensities.get(place).map(String::as_str).unwrap_or_default();
         self.labels.get(place).cloned().unwrap_or_else(|| label(&study.sweep, column))
@@ -116,15 +129,8 @@ impl Seen {
         let event = asked.event.column(study.sweep.outputs()).unwrap_or_default();
         let cells = study.table.completed(event);
         let intensities = study.table.numbers(column);
-        let keys = study.sweep.keys();
-        // Over an output each case has its own intensity, and runs of one record belong together however
-        // it is scaled.
-        let scales = |key: &str| is_size(key) || asked.intensities.iter().any(|name| name == key);
-        // Of cases that differ in other properties, too, those under one record are still not independent.
-        let by_record = keys.iter().any(|key| is_record(key));
-        let tells = |key: &str| if by_record { is_record(key) } else { !scales(key) };
         let others: Vec<Vec<&str>> =
-            keys.iter().filter(|key| tells(key)).map(|key| study.table.completed(key)).collect();
+            asked.grouping_keys(&study.sweep).into_iter().map(|key| study.table.completed(key)).collect();
         let mut groups: BTreeMap<String, Vec<Observation>> = BTreeMap::new();
         let mut observations = Vec::new();
         for (k, (cell, intensity)) in cells.iter().zip(&intensities).enumerate() {
@@ -464,7 +470,7 @@ mod tests {
             let _ = writeln!(table, "{number},{},{:?},{time},complete,", values.join(","), 1.0 + number as f64);
         }
         let Wanted { fragility, .. } = sweep.wanted().clone();
-        let table = StudyTable::read(&table).unwrap();
+        let table = StudyTable::read(table.as_bytes(), &sweep).unwrap();
         let study = Ensemble { name: "s".to_owned(), sweep, table };
         let asked = fragility.unwrap();
         Seen::of(&study, &asked, &asked.intensities[0]).groups.iter().map(Vec::len).collect()
@@ -496,7 +502,8 @@ mod tests {
             );
             let sweep = Sweep::read(&text, "f", &|_, _| Err("none".to_owned())).unwrap();
             let table = "case,time.end,blow,status,error\n0,1.0,,complete,\n1,2.0,0.5,complete,\n2,3.0,2.0,complete,\n3,4.0,,complete,\n";
-            Ensemble { name: String::new(), sweep, table: StudyTable::read(table).unwrap() }
+            let table = StudyTable::read(table.as_bytes(), &sweep).unwrap();
+            Ensemble { name: String::new(), sweep, table }
         };
         let seen = |study: &Ensemble| {
             let asked = study.sweep.wanted().fragility.clone().unwrap();

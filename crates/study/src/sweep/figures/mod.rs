@@ -86,19 +86,46 @@ impl Wanted {
         }
     }
 
+    /// The columns of the table that figures are made of: those of numbers, and those whose cells are taken as texts.
+    pub(crate) fn columns(&self, sweep: &Sweep) -> (Vec<String>, Vec<String>) {
+        let mut numbers: Vec<String> = self.of_numbers().into_iter().map(|(_, name)| name.to_owned()).collect();
+        numbers.extend(self.bands.iter().flat_map(Bands::outputs).map(|output| output.name().to_owned()));
+        let events = [self.fragility.as_ref().map(|of| &of.event), self.overturning.as_ref().map(|of| &of.event)];
+        let by = [self.distribution.as_ref().map(|of| &of.by), self.overturning.as_ref().map(|of| &of.by)];
+        let mut words: Vec<String> =
+            events.into_iter().flatten().filter_map(|event| event.column(sweep.outputs())).map(str::to_owned).collect();
+        words.extend(by.into_iter().flatten().flatten().cloned());
+        if let Some(of) = &self.fragility {
+            words.extend(of.grouping_keys(sweep).into_iter().map(str::to_owned));
+        }
+        for names in [&mut numbers, &mut words] {
+            names.sort_unstable();
+            names.dedup();
+        }
+        (numbers, words)
+    }
+
+    /// The columns that have to be numbers, each with its place in the sweep file.
+    pub(crate) fn of_numbers(&self) -> Vec<(&'static str, &str)> {
+        let mut all: Vec<(&str, &str)> = Vec::new();
+        if let Some(of) = &self.fragility {
+            all.extend(of.intensities.iter().map(|name| ("fragility.intensity", name.as_str())));
+        }
+        all.extend(self.distribution.iter().map(|of| ("distribution.of", of.of.as_str())));
+        if let Some(of) = &self.overturning {
+            all.extend([("overturning.x", of.x.as_str()), ("overturning.y", of.y.as_str())]);
+        }
+        all
+    }
+
     /// Refuses columns that the table won't have.
     pub(crate) fn check(&self, reader: &mut Reader<'_>, columns: &[&str]) {
-        let mut named: Vec<(&str, &str)> = Vec::new();
-        if let Some(of) = &self.fragility {
-            named.extend(of.intensities.iter().map(|name| ("fragility.intensity", name.as_str())));
+        let mut named = self.of_numbers();
+        if let Some(by) = self.distribution.as_ref().and_then(|of| of.by.as_deref()) {
+            named.push(("distribution.by", by));
         }
-        if let Some(of) = &self.distribution {
-            named.push(("distribution.of", &of.of));
-            named.extend(of.by.iter().map(|name| ("distribution.by", name.as_str())));
-        }
-        if let Some(of) = &self.overturning {
-            named.extend([("overturning.x", of.x.as_str()), ("overturning.y", of.y.as_str())]);
-            named.extend(of.by.iter().map(|name| ("overturning.by", name.as_str())));
+        if let Some(by) = self.overturning.as_ref().and_then(|of| of.by.as_deref()) {
+            named.push(("overturning.by", by));
         }
         for (path, name) in named.into_iter().filter(|(_, name)| !columns.contains(name)) {
             let rule = format!("results.csv has no column `{name}`");

@@ -221,7 +221,8 @@ mod tests {
             let _ = writeln!(table, "{number},{},{at},complete,", values.join(","));
         }
         let asked = sweep.wanted().overturning.clone().unwrap();
-        let study = Ensemble { name: "s".to_owned(), sweep, table: StudyTable::read(&table).unwrap() };
+        let table = StudyTable::read(table.as_bytes(), &sweep).unwrap();
+        let study = Ensemble { name: "s".to_owned(), sweep, table };
         figure(&study, &asked).unwrap()
     }
 
