@@ -46,7 +46,8 @@ const FLAT: f64 = 2.0;
 /// A block slid, in a word, if it did by this part of its base.
 const SLID: f64 = 0.01;
 
-/// A block that turns farther than ever at the end, and got to this part of its critical angle, tips: less may be the bending of a beam.
+/// A block that turns farther than ever at the end, and got to this part of its critical angle, tips: less may be the bending of a beam. The same part of
+/// it against what carries it tells that it isn't upright there: less is rounding.
 const BEGAN_TO_TIP: f64 = 1e-3;
 
 /// A block rocks, in a word, if it got to this part of its critical angle.
@@ -626,14 +627,19 @@ impl Seen {
             let way = Way::of(tilt);
             way.sign() * watched.velocity(layout, number, state)[2] > 0.0 && monitor.extreme().phi.abs() <= tilt.abs()
         };
+        // A block that rides on another one that rocks is tilted against it by rounding.
+        let began_to_tip = |monitor: &&RockingMonitor| {
+            let alpha = self.stance(watched).map_or(0.0, |stance| 0.5 * (stance.left.top - stance.right.top));
+            monitor.extreme().phi.abs() >= BEGAN_TO_TIP * alpha
+        };
         let not_upright = rocking.filter(|monitor| [Fate::Rocks, Fate::Moves].contains(&what) && monitor.count() == 0);
         let moves = what == Fate::Moves && self.still.is_none();
         let going = moves.then(|| self.going(watched, layout, number, state)).flatten();
         let turning = not_upright.filter(|_| what == Fate::Rocks || (moves && going.is_none())).filter(turns_on);
         // What stands on a beam that bends slowly turns with it.
         let turns = |_: &&RockingMonitor| what == Fate::Rocks || self.part.is_some_and(|part| part >= BEGAN_TO_TIP);
-        let tips = turning.filter(turns).map(|_| Way::of(tilt));
-        let on_its_way = not_upright.filter(|_| what == Fate::Rocks || tips.is_some());
+        let tips = turning.filter(turns).filter(began_to_tip).map(|_| Way::of(tilt));
+        let on_its_way = not_upright.filter(|_| what == Fate::Rocks || tips.is_some()).filter(began_to_tip);
         let trembles = || self.trembles(slid, SLID * base).filter(|_| moves && turning.is_none());
         let going = going.or_else(trembles);
         BodyVerdict {

@@ -93,3 +93,25 @@ fn the_last_peak_of_the_headline_is_the_last_of_the_summary() {
         assert_eq!((Some(last.phi), Some(last.t)), (summary.verdict[0].last_peak, summary.verdict[0].t), "{name}");
     }
 }
+
+/// A block that rides on one that rocks is tilted against it by rounding only.
+#[test]
+fn what_rides_on_a_block_that_rocks_does_not_tip() {
+    for end in ["1.0 s", "1.15 s", "1.25 s"] {
+        let text = format!(
+            "[time]\nend = '{end}'\nstep = '500 us'\n[ground]\n\
+             motion = {{ acceleration = ['3.6 m/s^2', '0 m/s^2'], signal = 'shake' }}\n[signal.shake]\nshape = 'one-sine'\n\
+             period = '0.8 s'\n[block.base]\ndensity = '2700 kg/m^3'\nwidth = '1.2 m'\nheight = '4 m'\ndepth = '1 m'\n\
+             on = 'ground'\nat = '0 m'\n[block.right]\ndensity = '2700 kg/m^3'\nwidth = '0.3 m'\nheight = '0.5 m'\n\
+             depth = '1 m'\non = 'base'\nat = '0.3 m'\n[contact.floor]\nbetween = ['base', 'ground']\nfriction = 0.7\n\
+             [contact.joint]\nbetween = ['right', 'base']\nfriction = 0.7\n"
+        );
+        let rider = run(&format!("rider-{}", end.replace(' ', "-")), &text);
+        let headline = &rider.summary.headline;
+        let (_, right) = headline.split_once("; `right` ").unwrap_or_else(|| panic!("{headline}"));
+        assert!(
+            !right.contains("tipping") && !right.contains("upright") && !right.contains("e\u{2212}"),
+            "{end}: {headline}"
+        );
+    }
+}
