@@ -67,7 +67,7 @@ pub(crate) fn json(recorder: &PageRecorder, panels: &Panels, summary: &Summary) 
             .has_network()
             .then(|| network::network(recorder))
             .filter(|network| !network.pairs.is_empty()),
-        moving: opening::moving(panels).map(|ends| ends.map(time)),
+        moving: opening::moving(recorder, panels).map(|ends| ends.map(time)),
         loads: pictures::loads(recorder),
         forces: plots::forces(recorder, panels),
         impacts: impacts::impacts(recorder),

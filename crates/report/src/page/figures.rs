@@ -23,7 +23,8 @@ use teeter_plot::{Axis, Band, Colour, Figure, Legend, Panel, Series};
 #[must_use]
 pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
     let panels = Panels::of(recorder);
-    let plots = Plots { recorder, panels: &panels, t: panels.curves.times() };
+    let moving = opening::shown(recorder, &panels);
+    let plots = Plots { recorder, panels: &panels, t: panels.curves.times(), moving };
     let scenery = &recorder.scenery;
     let width = 1e3 * scenery.display.figure_width;
     let mut figures = Vec::new();
@@ -36,7 +37,7 @@ pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
         add("displacement", plots.crowd_displacement());
     }
     for panel in panels.panels.iter().filter(|panel| panel.place == Place::Motion) {
-        add(&panel.id, plots.over_time(&panel.id, &panel.description, vec![plots.time_panel(panel)]));
+        add(&panel.id, plots.while_moving(&panel.id, &panel.description, vec![plots.time_panel(panel)]));
     }
     if let Some(figure) = span::shapes(recorder, &panels.units, "shapes") {
         add("shapes", figure);
@@ -95,13 +96,25 @@ struct Plots<'a> {
     recorder: &'a PageRecorder,
     panels: &'a Panels,
     t: Vec<f64>,
+    /// When anything moves, if that is a small part of the run, s.
+    moving: Option<[f64; 2]>,
 }
 
 impl Plots<'_> {
+    /// Of forces and energies, which may go on, or change, where nothing moves: the whole run.
     fn over_time(&self, id: &str, title: &str, panels: Vec<Panel>) -> Figure {
+        self.figure(id, title, panels, None)
+    }
+
+    /// Of motions: the part of the run in which anything moves.
+    fn while_moving(&self, id: &str, title: &str, panels: Vec<Panel>) -> Figure {
+        self.figure(id, title, panels, self.moving)
+    }
+
+    fn figure(&self, id: &str, title: &str, panels: Vec<Panel>, part: Option<[f64; 2]>) -> Figure {
         let (start, end) = (self.t[0], self.t[self.t.len() - 1]);
         let end = if end > start { end } else { start + 1.0 };
-        let [from, to] = opening::shown(self.panels).unwrap_or([start, end]);
+        let [from, to] = part.unwrap_or([start, end]);
         let part =
             if to - from < end - start { format!(", of a run to {}", with_digits(end, "s", 6)) } else { String::new() };
         let (unit, factor) = time_unit(to - from);

@@ -1,6 +1,7 @@
 //! On which part of a run plots over time open: where all that moves does so within a small part of it, the whole would be flat lines.
 
 use super::panels::{Line, Panels, Place};
+use super::recorder::PageRecorder;
 
 /// What moves for longer than this part of the run is seen in a plot of all of it.
 const SMALL: f64 = 0.2;
@@ -8,8 +9,12 @@ const SMALL: f64 = 0.2;
 /// A curve that stays within this part of its range of where it begins, or ends, is flat.
 const FLAT: f64 = 0.01;
 
-/// When anything moves for the first and for the last time, s; none where that is more than a fifth of the run.
-pub(crate) fn moving(panels: &Panels) -> Option<[f64; 2]> {
+/// When anything moves for the first and for the last time, s; none where that is more than a fifth of the run, and none of many bodies: the only motions
+/// that have plots of their own then are those of ground and supports.
+pub(crate) fn moving(recorder: &PageRecorder, panels: &Panels) -> Option<[f64; 2]> {
+    if recorder.scenery.is_crowded() {
+        return None;
+    }
     let (times, borders) = (panels.curves.times(), panels.curves.borders());
     let run = times.last()? - times.first()?;
     let motions = panels.panels.iter().filter(|panel| panel.place == Place::Motion).flat_map(|panel| &panel.lines);
@@ -18,10 +23,10 @@ pub(crate) fn moving(panels: &Panels) -> Option<[f64; 2]> {
     all.filter(|[from, to]| to > from && to - from <= SMALL * run)
 }
 
-/// The part of the run that figures show, with some room about what moves, s.
-pub(crate) fn shown(panels: &Panels) -> Option<[f64; 2]> {
+/// The part of the run that figures of motions show, with some room about what moves, s.
+pub(crate) fn shown(recorder: &PageRecorder, panels: &Panels) -> Option<[f64; 2]> {
     let times = panels.curves.times();
-    let [from, to] = moving(panels)?;
+    let [from, to] = moving(recorder, panels)?;
     let room = 0.25 * (to - from);
     Some([(from - room).max(*times.first()?), (to + room).min(*times.last()?)])
 }

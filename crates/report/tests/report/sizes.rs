@@ -266,5 +266,16 @@ fn figures_and_page_of_a_long_run_open_where_something_moves() {
     assert!((8.0..8.5).contains(&ends[0]) && (9.0..9.5).contains(&ends[1]), "{ends:?}");
     let svg = figure(&figures(&run.page), "x.svg");
     assert!(svg.contains("Time t (s), of a run to 20 s") && svg.contains(">9.0<") && !svg.contains(">15<"), "{svg}");
+    // Forces and energies may change where nothing moves.
+    for file in ["contact_forces.svg", "energy.svg"] {
+        assert!(!figure(&figures(&run.page), file).contains("of a run to"), "{file}");
+    }
     assert!(data(&scenario("sliding").html)["moving"].is_null(), "it moves for most of the run");
+    // Of many bodies only the ground has a plot of its own.
+    let crowd = "[time]\nend = '0.4 s'\nstep = '1 ms'\n[ground]\nmotion = { acceleration = ['1 m/s^2', '0 m/s^2'], signal = 'kick' }\n\
+        [signal.kick]\nshape = 'one-sine'\nperiod = '20 ms'\n[block.b]\ndensity = '800 kg/m^3'\nwidth = '20 cm'\nheight = '20 cm'\n\
+        depth = '20 cm'\nposition = ['0 cm', '10 cm']\nrepeat = { count = 40, shift = ['50 cm', '0 cm'] }\n[contact.base]\nbetween = ['*', 'ground']\n\
+        friction = 0.4\n";
+    let crowd = data(&crate::page::run("shaken-crowd", crowd).html);
+    assert!(!crowd["crowd"].is_null() && crowd["moving"].is_null());
 }
