@@ -137,6 +137,8 @@ pub(crate) struct Panels {
     pub(crate) panels: Vec<TimePanel>,
     pub(crate) portraits: Vec<Portrait>,
     pub(crate) left_out: Vec<LeftOut>,
+    /// How many impulses in stretches with an impact aren't drawn, as the force beside them gives as much in a step.
+    pub(crate) of_forces: usize,
     /// The units that quantities have on this page.
     pub(crate) units: Units,
     /// The prefixes of the units of normal and of tangential forces, with their factors, by contacts.
@@ -168,6 +170,7 @@ impl Panels {
                 panels: Vec::new(),
                 portraits: Vec::new(),
                 left_out: Vec::new(),
+                of_forces: 0,
             };
             panels.fill(recorder);
             panels

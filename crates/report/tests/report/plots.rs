@@ -286,3 +286,31 @@ fn lines_of_a_plot_are_where_a_block_that_lies_on_its_side_overturns() {
         "{guides:?}"
     );
 }
+
+/// A cube that bounces, and is pressed down long after, has its impacts drawn: in 5 ms that push gives more than any of them.
+#[test]
+fn a_large_force_at_another_time_hides_no_impact() {
+    let text = "[time]\nend = '3 s'\nstep = '5 ms'\n[ground]\n[signal.on]\nshape = 'constant'\nstart = '2.5 s'\n[force.push]\non = 'cube'\n\
+        force = ['0 N', '-300 N']\nsignal = 'on'\n[block.cube]\ndensity = '1000 kg/m^3'\nwidth = '10 cm'\nheight = '10 cm'\ndepth = '10 cm'\n\
+        position = ['0 m', '10 cm']\n[contact.floor]\nbetween = ['cube', 'ground']\nfriction = 0.5\nrestitution = 0.6\n";
+    for (name, run) in
+        [("pressed-cube", &run("pressed-cube", text)), ("free-rocking-on-beam", scenario("free-rocking-on-beam"))]
+    {
+        let page = data(&run.html);
+        let points = page["forces"]["points"].as_array().unwrap_or_else(|| panic!("{}", page["forces"]));
+        let borders = numbers(&page["forces"]["borders"]);
+        let impacts = table(&run.folder.join("impacts.csv"));
+        let struck = column(&impacts, "t");
+        let drawn: Vec<f64> = (0..borders.len() - 1)
+            .filter(|k| points.iter().any(|point| !point["impacts"].is_null() && numbers(&point["impacts"])[*k] > 0.0))
+            .map(|k| borders[k + 1])
+            .collect();
+        let stretch = borders.windows(2).map(|ends| ends[1] - ends[0]).fold(0.0, f64::max) * 1.01;
+        for t in struck {
+            assert!(drawn.iter().any(|at| (at - t).abs() <= stretch), "{name}: {t} of {drawn:?}");
+        }
+        for at in &drawn {
+            assert!(struck.iter().any(|t| (at - t).abs() <= stretch), "{name}: {at} of {struck:?}");
+        }
+    }
+}

@@ -44,19 +44,24 @@ impl ForceCurve {
         }
     }
 
-    /// The largest mean normal force of the stretches of steps without impacts, N.
-    pub(crate) fn largest_between_impacts(&self) -> f64 {
-        let strikes = |k: usize| self.impacts.get(k).is_some_and(|impulse| *impulse > 0.0);
-        let between = self.normal.iter().enumerate().filter(|(k, force)| !strikes(*k) && force.is_finite());
-        between.fold(0.0, |most: f64, (_, force)| most.max(*force))
-    }
-
-    /// Takes impulses of up to `least` (N·s) for those of forces, not of impacts.
-    pub(crate) fn drop_impacts_up_to(&mut self, least: f64) {
-        self.impacts.iter_mut().filter(|impulse| **impulse <= least).for_each(|impulse| *impulse = 0.0);
+    /// Takes impulses for those of the force, not of impacts, that are no more than the force beside them gives in a time of `lasting` (s): the mean normal
+    /// force of the nearest stretch without an impulse before, or after. What follows a flight is an impact, however small. Says how many
+    /// stretches lost theirs.
+    pub(crate) fn drop_impacts_of_force(&mut self, lasting: f64) -> usize {
+        let strikes: Vec<bool> = self.impacts.iter().map(|impulse| *impulse > 0.0).collect();
+        let force = |k: usize| (!strikes[k]).then(|| self.normal[k].max(0.0));
+        let of_force = |k: &usize| {
+            let before = (0..*k).rev().find_map(force);
+            let after = (k + 1..strikes.len()).find_map(force).unwrap_or(0.0);
+            let largest = if before == Some(0.0) { 0.0 } else { before.unwrap_or(0.0).max(after) };
+            self.impacts[*k] <= lasting * largest
+        };
+        let dropped: Vec<usize> = (0..strikes.len()).filter(|k| strikes[*k]).filter(of_force).collect();
+        dropped.iter().for_each(|k| self.impacts[*k] = 0.0);
         if self.impacts.iter().all(|impulse| *impulse == 0.0) {
             self.impacts.clear();
         }
+        dropped.len()
     }
 
     /// Takes slip that is nothing but rounding, in all of a stretch in which the contact slips no more than that (m), for sticking.
@@ -81,25 +86,28 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_step_of_the_force_gives_is_no_impact() {
-        let of = |impacts: [f64; 4]| ForceCurve {
-            normal: vec![4.0, 5.0, 70.0, 0.0],
-            tangential: vec![0.0; 4],
-            slip: vec![0.0; 4],
-            state: vec![ContactState::Stick; 4],
-            usual: Vec::new(),
-            impacts: impacts.to_vec(),
-            alternates: false,
-            hides_slip: false,
+    fn what_a_step_of_the_force_beside_it_gives_is_no_impact() {
+        let kept = |normal: [f64; 6], impacts: [f64; 6]| {
+            let mut forces = ForceCurve {
+                normal: normal.to_vec(),
+                tangential: vec![0.0; 6],
+                slip: vec![0.0; 6],
+                state: vec![ContactState::Stick; 6],
+                usual: Vec::new(),
+                impacts: impacts.to_vec(),
+                alternates: false,
+                hides_slip: false,
+            };
+            let dropped = forces.drop_impacts_of_force(0.1);
+            (forces.impacts, dropped)
         };
-        // Where all steps had impacts the mean is that of these.
-        assert_eq!(of([0.0, 0.0, 7.0, 0.0]).largest_between_impacts(), 5.0);
-        let kept = |mut forces: ForceCurve| {
-            forces.drop_impacts_up_to(1.0);
-            forces.impacts
-        };
-        assert_eq!(kept(of([0.5, 0.0, 7.0, 1.0])), [0.0, 0.0, 7.0, 0.0]);
-        assert!(kept(of([0.5, 0.0, 0.7, 1.0])).is_empty());
+        // The mean of a stretch with an impulse, where all of its steps have one, is that of these.
+        let press = [4.0, 70.0, 5.0, 5.0, 70.0, 5.0];
+        assert_eq!(kept(press, [0.0, 0.5, 0.0, 0.0, 0.6, 0.0]), (vec![0.0, 0.0, 0.0, 0.0, 0.6, 0.0], 1));
+        assert_eq!(kept(press, [0.0, 0.4, 0.0, 0.0, 0.5, 0.0]), (Vec::new(), 2));
+        // After a flight it is one, and a large force at another time hides none.
+        assert_eq!(kept([0.0, 3.0, 0.0, 0.0, 5.0, 5.0], [0.0, 0.1, 0.0, 0.0, 0.1, 0.0]).1, 0);
+        assert_eq!(kept([0.0, 1.0, 1.0, 1.0, 1e3, 1e3], [0.0, 0.0, 0.3, 0.0, 0.0, 0.0]).1, 0);
     }
 
     #[test]

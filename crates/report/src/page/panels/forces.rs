@@ -17,7 +17,7 @@ pub(crate) fn unseen_slip(recorder: &PageRecorder, contact: &ContactDrawn) -> f6
     ROUNDING * SLIP_SCALE * recorder.scenery.blocks[contact.block].reach
 }
 
-/// An impulse of up to this many times what a step of the largest force gives is none of an impact: forces are means, which those of single steps
+/// An impulse of up to this many times what a step of the force beside it gives is none of an impact: forces are means, which those of single steps
 /// exceed.
 const OF_STEP: f64 = 2.0;
 
@@ -34,9 +34,9 @@ impl Panels {
             let own = &mut self.forces[contact.first..contact.first + contact.points.len()];
             own.iter_mut().flatten().for_each(|forces| forces.stick_within(rounding));
             // What a step of the force gives anyway is no impact worth a plot.
-            let of_step =
-                self.curves.step() * own.iter().flatten().map(ForceCurve::largest_between_impacts).fold(0.0, f64::max);
-            own.iter_mut().flatten().for_each(|forces| forces.drop_impacts_up_to(OF_STEP * of_step));
+            let lasting = OF_STEP * self.curves.step();
+            self.of_forces +=
+                own.iter_mut().flatten().map(|forces| forces.drop_impacts_of_force(lasting)).sum::<usize>();
         }
         for (pair, contact) in scenery.contacts.iter().enumerate() {
             let points = contact.points.iter().zip(&self.forces[contact.first..]);
