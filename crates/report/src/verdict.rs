@@ -161,13 +161,16 @@ pub struct BodyVerdict {
     /// How it moves at the end, of one that does and has no other fate.
     #[serde(skip)]
     pub(crate) going: Option<Going>,
-    /// Of one that is shaken where it stands, or hops there: whether what carries it moves at the end.
+    /// Of one that is shaken where it stands, or hops there: what it stands on, and in the end on other blocks, in words, if that moves at the end.
     #[serde(skip)]
-    pub(crate) on_what_moves: bool,
-    /// Of a block that rocks as one with those below it: the lowest of them, on whose base they rock.
+    pub(crate) on_what_moves: Option<&'static str>,
+    /// Of a block that turns as one with those below it: the lowest of them, on whose base they rock.
     #[serde(skip)]
     pub(crate) turns_with: Option<String>,
-    /// Of the lowest of blocks that rock as one: their largest φ/α, with the α of all of them together.
+    /// Whether these are a column: one block on the other, none slid.
+    #[serde(skip)]
+    pub(crate) in_column: bool,
+    /// Of the lowest block of a column: its largest φ/α, with the α of all of them together.
     #[serde(skip)]
     pub(crate) column: Option<f64>,
 }
@@ -183,7 +186,9 @@ struct Seen {
     angle: f64,
     /// The largest |φ|/α.
     part: Option<f64>,
-    /// When that was last large enough to be called rocking, s.
+    /// How far it has turned at most against what carries it, to the left and to the right, rad.
+    turned: [f64; 2],
+    /// When |φ|/α was last large enough to be called rocking, s.
     rocked: Option<f64>,
     /// Since when it is past a point of no return, s, and to which side.
     beyond: Option<(f64, Way)>,
@@ -493,6 +498,9 @@ impl Fates {
                 }
             }
             seen.angle = q[2];
+            let tilt = layout.tilt(number, &state.q);
+            let [left, right] = &mut seen.turned;
+            (*left, *right) = (left.max(tilt), right.max(-tilt));
             if let Some((from, to)) = seen.stood.zip(watched.place(layout, number, state)) {
                 let [left, right] = &mut seen.reached;
                 (*left, *right) = (left.min(to - from), right.max(to - from));
@@ -566,7 +574,7 @@ impl Fates {
             })
         };
         let mut verdict: Vec<BodyVerdict> = self.blocks.iter().zip(&watch.blocks).enumerate().filter_map(of).collect();
-        columns::find(&watch.blocks, scene, layout, state, rocking, &mut verdict);
+        columns::find(&watch.blocks, &self.blocks, scene, layout, state, &mut verdict);
         verdict
     }
 }
@@ -601,7 +609,10 @@ impl Seen {
             let largest = || Some(monitor.extreme()).filter(|peak| peak.phi != 0.0);
             monitor.turned().or_else(of_crossings).or_else(largest)
         });
-        let bounces = rests.is_none() && self.bounces(watched, layout, number, state);
+        let bounces = rests.is_none() && {
+            let crossed = rocking.and_then(|monitor| monitor.crossings().last()).map(|crossing| crossing.t);
+            self.bounces(watched, layout, number, state, crossed)
+        };
         let (what, t, way) = match (overturned, self.out, self.sunk, rests) {
             (Some((t, way)), ..) => (Fate::Overturned, Some(t), Some(way)),
             (None, Some((t, way)), ..) => (Fate::Left, Some(t), Some(way)),
@@ -674,14 +685,15 @@ impl Seen {
             },
             tumbled: tumbled.filter(|turn| turn.abs() >= TUMBLED && what != Fate::Overturned),
             on_its_way: on_its_way.map(|_| tilt),
-            on_what_moves: going.is_some_and(Going::stays) && {
+            on_what_moves: watched.carrier.word().filter(|_| {
                 let q = &state.q[layout.blocks[number].range.clone()];
                 let [vx, vy, _] = watched.carrier.velocity([q[0], q[1]], layout, state);
-                vx.hypot(vy) > watched.still_speed
-            },
+                going.is_some_and(Going::stays) && vx.hypot(vy) > watched.still_speed
+            }),
             going,
             tips,
             turns_with: None,
+            in_column: false,
             column: None,
         }
     }

@@ -169,6 +169,15 @@ impl Carrier {
         }
     }
 
+    /// What the velocity is of, in words; `None` of what doesn't move.
+    pub(super) fn word(&self) -> Option<&'static str> {
+        match self.root {
+            On::Ground(_) => Some("ground"),
+            On::Beam(..) => Some("a beam"),
+            On::Fixed | On::Block(_) => None,
+        }
+    }
+
     /// Velocity and angular velocity of what carries the block, where the block is.
     pub(super) fn velocity(&self, at: [f64; 2], layout: &Layout, state: &State) -> [f64; 3] {
         match &self.root {

@@ -1,8 +1,8 @@
 //! Blocks that stand on each other and rock as one: on the base of the lowest, with the critical angle of all of them together.
 
-use super::{BodyVerdict, Fate, Watched};
+use super::{BodyVerdict, Fate, SLID, Seen, Watched};
 use std::collections::BTreeMap;
-use teeter_integrator::{RockingMonitor, State};
+use teeter_integrator::State;
 use teeter_scenario::scene::{Scene, SupportingBody};
 use teeter_scenario::simulation::Layout;
 
@@ -13,10 +13,10 @@ const AS_ONE: f64 = 0.02;
 /// overturning.
 pub(super) fn find(
     watched: &[Watched],
+    seen: &[Seen],
     scene: &Scene,
     layout: &Layout,
     state: &State,
-    rocking: &[RockingMonitor],
     verdict: &mut [BodyVerdict],
 ) {
     // Verdicts are of the blocks that aren't driven, in their order.
@@ -33,7 +33,7 @@ pub(super) fn find(
         for _ in 0..watched.len() {
             let Some(SupportingBody::Block(below)) = watched[block].on else { break };
             let (Some(of), Some(_)) = (rocks(block, verdict), rocks(below, verdict)) else { break };
-            let opened = rocking.get(block).map_or(f64::INFINITY, opened);
+            let opened = seen.get(block).map_or(f64::INFINITY, |seen| seen.turned[0].max(seen.turned[1]));
             let Some(turned) = turned(block, verdict[of].max_phi_over_alpha) else { break };
             if watched[below].driven || opened > AS_ONE * turned {
                 break;
@@ -47,30 +47,41 @@ pub(super) fn find(
         groups.entry(lowest_below(number)).or_default().push(number);
     }
     for (root, group) in groups.into_iter().filter(|(_, group)| group.len() > 1) {
+        let stays =
+            |number: usize| rocks(number, verdict).is_some_and(|of| keeps_its_place(&watched[number], &verdict[of]));
+        let above = |below: usize| {
+            group.iter().filter(|number| watched[**number].on == Some(SupportingBody::Block(below))).count()
+        };
+        let in_column = group.iter().all(|number| above(*number) <= 1)
+            && group.iter().all(|number| *number == root || stays(*number));
         for number in group.iter().filter(|number| **number != root) {
             if let Some(of) = rocks(*number, verdict) {
                 verdict[of].turns_with = Some(layout.blocks[root].name.clone());
+                verdict[of].in_column = in_column;
             }
         }
-        let Some(of) = rocks(root, verdict) else { continue };
-        let alpha = critical_angle(watched, layout, state, &group, root);
-        verdict[of].column =
-            turned(root, verdict[of].max_phi_over_alpha).zip(alpha).map(|(turned, alpha)| turned / alpha);
+        let Some(of) = rocks(root, verdict).filter(|_| in_column) else { continue };
+        verdict[of].column = critical_angles(watched, layout, state, &group, root).map(|alpha| {
+            let parts = seen[root].turned.into_iter().zip(alpha).filter(|(_, alpha)| *alpha > 0.0);
+            parts.fold(0.0, |most: f64, (turned, alpha)| most.max(turned / alpha))
+        });
     }
 }
 
-/// How far a block has turned at most relative to what carries it, rad.
-fn opened(monitor: &RockingMonitor) -> f64 {
-    monitor
-        .peaks()
-        .iter()
-        .map(|peak| peak.phi)
-        .chain([monitor.extreme().phi])
-        .fold(0.0, |most: f64, phi| most.max(phi.abs()))
+/// Whether a block never slid along what carries it by as much as is told.
+fn keeps_its_place(of: &Watched, verdict: &BodyVerdict) -> bool {
+    let base = of.feet.map_or(0.0, |[left, right]| right[0] - left[0]);
+    verdict.farthest.is_none() && verdict.slid.is_some_and(|slid| slid.abs() < SLID * base)
 }
 
-/// The angle by which blocks turn about the nearer foot of the lowest until their common mass centre is over it, rad.
-fn critical_angle(watched: &[Watched], layout: &Layout, state: &State, group: &[usize], root: usize) -> Option<f64> {
+/// The angles by which blocks turn about the left and the right foot of the lowest until their common mass centre is over it, rad.
+fn critical_angles(
+    watched: &[Watched],
+    layout: &Layout,
+    state: &State,
+    group: &[usize],
+    root: usize,
+) -> Option<[f64; 2]> {
     let place = |number: usize| &state.q[layout.blocks[number].range.clone()];
     let mass: f64 = group.iter().map(|number| watched[*number].mass).sum();
     let centre =
@@ -79,6 +90,7 @@ fn critical_angle(watched: &[Watched], layout: &Layout, state: &State, group: &[
     let (sin, cos) = own[2].sin_cos();
     let [dx, dy] = [centre[0] - own[0], centre[1] - own[1]];
     let [x, y] = [cos * dx + sin * dy, cos * dy - sin * dx];
-    let alpha = feet.map(|foot| (x - foot[0]).abs().atan2(y - foot[1]));
-    Some(alpha[0].min(alpha[1])).filter(|alpha| *alpha > 0.0)
+    let slope = watched[root].slope(&state.q);
+    let [left, right] = feet.map(|foot| (x - foot[0]).atan2(y - foot[1]));
+    Some([left - slope, slope - right])
 }

@@ -79,6 +79,8 @@ pub(super) struct Touched {
     was_free: bool,
     /// When it last came down after a flight, not a moment without a contact, s.
     landed: Option<f64>,
+    /// When it came down after the flight before that, s.
+    landed_before: Option<f64>,
     /// How long that flight took, from the start of the run if it had not touched anything before, s.
     flown: f64,
     /// How high its mass centre was over what carries it at the end of the last step, where it last touched something, and at the highest since, m.
@@ -120,7 +122,7 @@ impl Fates {
             let flight = FLIGHT * watched.still_time;
             let flew = touched.last.map_or(touched.was_free, |last| step.t_start - last >= flight);
             if flew && touched.last != Some(t) {
-                touched.landed = Some(t);
+                touched.landed_before = touched.landed.replace(t);
                 touched.flown = step.t_start - touched.last.unwrap_or(0.0);
                 touched.rose = if touched.last.is_some() { touched.strayed() } else { f64::INFINITY };
             }
@@ -186,9 +188,23 @@ impl Seen {
         Some(if foot.abs() <= 0.5 * speed { Going::Rolls } else { Going::Slides })
     }
 
-    /// Whether it is in the air after a landing, or was so a short time ago, higher than what rocks hops.
-    pub(super) fn bounces(&self, watched: &Watched, layout: &Layout, number: usize, state: &State) -> bool {
-        let Touched { rose, landed, .. } = self.touched;
+    /// Whether it is in the air after a landing, or was so a short time ago, higher than what rocks hops. After a single hop it rocks as soon as it
+    /// has `crossed` the upright (s) since it landed.
+    pub(super) fn bounces(
+        &self,
+        watched: &Watched,
+        layout: &Layout,
+        number: usize,
+        state: &State,
+        crossed: Option<f64>,
+    ) -> bool {
+        let Touched { rose, landed, landed_before, last, .. } = self.touched;
+        let flies = last.is_none_or(|last| state.t - last >= FLIGHT * watched.still_time);
+        let again = landed.zip(landed_before).is_some_and(|(now, before)| now - before <= SETTLED * watched.still_time);
+        let rocks = landed.zip(crossed).is_some_and(|(landed, crossed)| crossed > landed);
+        if rocks && !flies && !again {
+            return false;
+        }
         let high = BOUNCES * watched.reach;
         let is_high = (rose.is_finite() && rose >= high) || (landed.is_some() && self.touched.strayed() >= high);
         is_high && self.going(watched, layout, number, state) == Some(Going::Bounces)

@@ -150,7 +150,8 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         Fate::Slid if of.still_from.is_some() => beside(format!("{slid}{}", still(scene, of, end))),
         Fate::Slid => beside(format!("slides on, {slid} so far")),
         Fate::Rocks if of.turns_with.is_some() => {
-            format!("rocks as one with `{}`", of.turns_with.as_deref().unwrap_or_default())
+            let how = if of.in_column { "rocks" } else { "turns" };
+            format!("{how} as one with `{}`", of.turns_with.as_deref().unwrap_or_default())
         }
         Fate::Rocks | Fate::Moves if of.on_its_way.is_some() => {
             let now = of.on_its_way.map_or_else(String::new, angle);
@@ -177,10 +178,10 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
                 let side = direction(scene, off).side;
                 beside(format!("is {}, {} {side} its start", Going::Bounces.word(), with_unit(off.abs(), "m")))
             }
-            Some(going) if of.on_what_moves => {
-                beside(format!("is {}, on {} that moves", going.word(), below(scene, of)))
+            Some(going) => {
+                let on = of.on_what_moves.map_or_else(String::new, |what| format!(", on {what} that moves"));
+                beside(format!("is {}{on}", going.word()))
             }
-            Some(going) => beside(format!("is {}", going.word())),
             None => beside("still moves".to_owned()),
         },
     };
@@ -234,17 +235,6 @@ fn moving_base(scene: &Scene, bodies: &[&BodyVerdict]) -> &'static str {
         all if all.iter().all(|below| *below == Some(Driven::Supports)) => " on moving supports",
         all if all.iter().all(|below| *below == Some(Driven::Block)) => " on a moving block",
         _ => " on what moves under them",
-    }
-}
-
-/// What a block stands on, in words after "on".
-fn below(scene: &Scene, of: &BodyVerdict) -> &'static str {
-    match scene.blocks.iter().find(|block| block.name == of.body).map(|block| block.placement) {
-        Some(Placement::On { support: SupportingBody::Beam(_), .. }) => "a beam",
-        Some(Placement::On { support: SupportingBody::Block(_), .. }) => "a block",
-        Some(Placement::On { support: SupportingBody::Ground, .. }) => "ground",
-        _ if !scene.beams.is_empty() => "a beam",
-        _ => "what",
     }
 }
 
@@ -324,14 +314,19 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
         .filter(|of| of.what == Fate::Rocks || of.tips.is_some())
         .partition(|of| of.tips.is_some());
     // Blocks that turn as one rock together, on the base of the lowest.
-    let bases: Vec<_> = rocking.iter().copied().filter(|of| of.column.is_some()).collect();
+    let bases: Vec<_> = rocking
+        .iter()
+        .copied()
+        .filter(|base| verdict.iter().any(|of| of.turns_with.as_ref() == Some(&base.body)))
+        .collect();
     let is_on =
         |of: &BodyVerdict, base: &BodyVerdict| of.body == base.body || of.turns_with.as_ref() == Some(&base.body);
     let rocking: Vec<_> = rocking.into_iter().filter(|of| !bases.iter().any(|base| is_on(of, base))).collect();
     tell(&tipping, if tipping.len() == 1 { "is still tipping" } else { "are still tipping" }, "");
     for base in &bases {
         let column: Vec<_> = verdict.iter().filter(|of| is_on(of, base)).collect();
-        tell(&column, &format!("rock on as one column on the base of `{}`", base.body), "");
+        let how = if base.column.is_some() { "rock on as one column" } else { "turn as one" };
+        tell(&column, &format!("{how} on the base of `{}`", base.body), "");
     }
     tell(&rocking, if rocking.len() == 1 { "rocks on" } else { "rock on" }, "");
     for going in Going::ALL {
@@ -354,7 +349,7 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
     let others = || {
         let stayed = verdict.iter().filter(|of| !matches!(of.what, Fate::Fell | Fate::Overturned));
         let share = |of: &BodyVerdict| {
-            bases.iter().find(|base| is_on(of, base)).map_or(of.max_phi_over_alpha, |base| base.column)
+            bases.iter().find(|base| is_on(of, base)).and_then(|base| base.column).or(of.max_phi_over_alpha)
         };
         stayed.map(share)
     };
@@ -363,10 +358,12 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
     let mut text = parts.join("; ");
     if largest >= super::ROCKED {
         let whose = match of_all {
-            true if bases.len() == 1 && rocking.is_empty() => "the column",
+            true if rocking.is_empty() && matches!(bases[..], [base] if base.column.is_some()) => "the column",
             true => "all",
-            false if fell.is_empty() => "those that didn't overturn",
-            false => "those that neither fell nor overturned",
+            false if !fell.is_empty() => "those that neither fell nor overturned",
+            false if verdict.iter().any(|of| of.what == Fate::Overturned) => "those that didn't overturn",
+            // Those of which it is unknown have none.
+            false => "all",
         };
         text.push_str(&format!("; largest φ/α of {whose} {}", part(largest)));
     }

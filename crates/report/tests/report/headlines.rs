@@ -67,6 +67,11 @@ fn what_stands_on_a_beam_that_moves_says_so() {
         [contact.b]\nbetween = ['crate', 'bridge']\nfriction = 0.4\n";
     let headline = run("on-a-bridge", text).summary.headline;
     assert_eq!(headline, "`crate` is still trembling where it stands, on a beam that moves");
+    // What moves is the beam under both.
+    let lid = "[block.lid]\ndensity = '1000 kg/m^3'\nwidth = '16 cm'\nheight = '10 cm'\ndepth = '50 cm'\non = 'crate'\nat = '8 m'\n\
+        [contact.lid]\nbetween = ['lid', 'crate']\nfriction = 0.4\n";
+    let headline = run("lid-on-a-bridge", &format!("{}{lid}", text.replace("'2 s'", "'1.4 s'"))).summary.headline;
+    assert!(headline.ends_with("`lid` is still trembling where it stands, on a beam that moves"), "{headline}");
 }
 
 /// The sentence at the head doesn't stand beside a warning against it as if that were not there.
@@ -114,4 +119,54 @@ fn what_rides_on_a_block_that_rocks_does_not_tip() {
             "{end}: {headline}"
         );
     }
+}
+
+const BLOCKS: &str = "[time]\nend = '1.1 s'\nstep = '500 us'\n[ground]\n\
+    motion = { acceleration = ['PEAK m/s^2', '0 m/s^2'], signal = 'shake' }\n[signal.shake]\nshape = 'one-sine'\nperiod = '0.8 s'\n\
+    [contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.7\n[contact.joints]\nbetween = ['*', '*']\nfriction = 0.7\n";
+
+fn block(name: &str, [width, height]: [f64; 2], on: &str, at: f64) -> String {
+    format!(
+        "[block.{name}]\ndensity = '2700 kg/m^3'\nwidth = '{width} m'\nheight = '{height} m'\ndepth = '1 m'\non = '{on}'\nat = '{at} m'\n"
+    )
+}
+
+#[test]
+fn two_blocks_beside_each_other_on_a_third_are_no_column() {
+    let blocks = [
+        block("base", [1.2, 4.0], "ground", 0.0),
+        block("left", [0.3, 0.5], "base", -0.3),
+        block("right", [0.3, 0.5], "base", 0.3),
+    ];
+    let headline = run("no-column", &(BLOCKS.replace("PEAK", "3.6") + &blocks.concat())).summary.headline;
+    assert!(
+        headline.starts_with("all 3 blocks turn as one on the base of `base`; largest φ/α of all 0."),
+        "{headline}"
+    );
+}
+
+/// The mass centre of the two blocks is 0.52857 m from the left foot, 0.47143 m from the right one, and 1.75 m high.
+#[test]
+fn a_column_that_leans_has_a_critical_angle_on_each_side() {
+    for (peak, name) in [("3.6", "leaning-left"), ("-3.6", "leaning-right")] {
+        let blocks = [block("base", [1.0, 3.0], "ground", 0.0), block("top", [1.0, 0.5], "base", 0.2)];
+        let ran = run(name, &(BLOCKS.replace("PEAK", peak) + &blocks.concat()));
+        let (headline, table) = (&ran.summary.headline, crate::plots::table(&ran.folder.join("trajectory.csv")));
+        let phi = &table.iter().find(|(column, _)| column == "base.phi").unwrap().1;
+        let part = |phi: &f64| phi.abs() / (if *phi > 0.0 { 0.52857_f64 } else { 0.47143 } / 1.75).atan();
+        let wanted = phi.iter().map(part).fold(0.0, f64::max);
+        let (_, told) = headline.split_once("largest φ/α of the column ").unwrap_or_else(|| panic!("{headline}"));
+        let told: f64 = told.split([')', ';']).next().unwrap().parse().unwrap();
+        assert!((told / wanted - 1.0).abs() < 0.02, "{headline}: {wanted}");
+    }
+}
+
+/// A push of four times its weight for 30 ms lifts it by a centimetre once.
+#[test]
+fn what_hopped_once_and_rocks_since_does_not_bounce() {
+    let text = "[time]\nend = '300 ms'\nstep = '200 us'\n[ground]\n[signal.kick]\nshape = 'half-sine'\nstart = '1 ms'\nduration = '30 ms'\n\
+        [force.push]\non = 'box'\nforce = ['0 N', '78 N']\nsignal = 'kick'\n[block.box]\ndensity = '1000 kg/m^3'\nwidth = '10 cm'\n\
+        height = '20 cm'\ndepth = '10 cm'\non = 'ground'\nat = '0 m'\ntilt = '4 deg'\n[contact.base]\nbetween = ['box', 'ground']\nfriction = 0.6\n";
+    let headline = run("hopped-once", text).summary.headline;
+    assert!(headline.starts_with("`box` rocks on"), "{headline}");
 }
