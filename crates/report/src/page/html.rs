@@ -7,7 +7,7 @@ mod tiles;
 
 use super::panels::Panels;
 use super::recorder::PageRecorder;
-use super::rocking::half_cycles;
+use super::rocking::half_cycles_and_left_out;
 use super::{accelerograms, content, data, thrust};
 use crate::{Summary, with_digits};
 use std::collections::BTreeMap;
@@ -70,7 +70,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("records", accelerograms::section(&recorder.scenery.records, &summary.records, Some(of_run))),
         ("borne", beams::borne(recorder, &panels.units, summary)),
         ("thrust", thrust::section(recorder, panels.many_at_end())),
-        ("rocking", rocking::rocking(&half_cycles(recorder, summary), recorder, summary.dt)),
+        ("rocking", rocking::rocking(&half_cycles_and_left_out(recorder, summary), recorder, summary.dt)),
         ("model", model::model(summary)),
         ("numbers", tiles::numbers(&values, summary)),
         ("settings", escaped(scene_toml)),

@@ -69,7 +69,24 @@ fn is_swing(before: Option<f64>, after: Option<f64>, alpha: f64) -> bool {
 /// The half cycles of a run, block by block.
 #[must_use]
 pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle> {
-    let mut cycles = Vec::new();
+    half_cycles_and_left_out(recorder, summary).0
+}
+
+/// Passages of a block that are left out of the half cycles.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct LeftOutCycles {
+    pub(crate) body: String,
+    /// How many there are, and near how many a corner landed.
+    pub(crate) count: usize,
+    pub(crate) hits: usize,
+}
+
+/// The half cycles of a run, and of which blocks they are left out.
+pub(crate) fn half_cycles_and_left_out(
+    recorder: &PageRecorder,
+    summary: &Summary,
+) -> (Vec<HalfCycle>, Vec<LeftOutCycles>) {
+    let (mut cycles, mut left_out) = (Vec::new(), Vec::new());
     for (number, block) in recorder.scenery.blocks.iter().enumerate() {
         // A polygon has no base to rock on that would say which of its corners land.
         let Some(alpha) = block.alpha else { continue };
@@ -126,9 +143,11 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
         // On rigid contacts one corner stands as the other comes down, unless it bounces or tumbles, which is no rocking.
         let hits = cycles[own..].iter().filter(|cycle| cycle.omega.is_some()).count();
         let all_kept = recorder.kept.impact_count as usize <= recorder.kept.impacts.len();
-        if 2 * hits < cycles.len() - own && all_kept && recorder.scenery.touches_rigidly(number) {
+        let count = cycles.len() - own;
+        if 2 * hits < count && all_kept && recorder.scenery.touches_rigidly(number) {
             cycles.truncate(own);
+            left_out.push(LeftOutCycles { body: block.name.clone(), count, hits });
         }
     }
-    cycles
+    (cycles, left_out)
 }

@@ -16,6 +16,7 @@ fn what_bounces_neither_rocks_nor_slides() {
     assert!(!headline.contains("rocks") && !headline.contains("slid"), "{headline}");
     assert!(!bouncing.summary.crossings.is_empty() && half_cycles(&bouncing.page, &bouncing.summary).is_empty());
     assert!(!bouncing.html.contains("id=\"rocking\""));
+    assert!(bouncing.html.contains("id=\"no-half-cycles\""), "it says why");
 }
 
 /// Three blocks on each other, tilted as one, which rock on the base of the lowest.

@@ -1,7 +1,7 @@
 //! The table of half cycles.
 
 use crate::page::recorder::PageRecorder;
-use crate::page::rocking::HalfCycle;
+use crate::page::rocking::{HalfCycle, LeftOutCycles};
 use std::fmt::Write;
 use teeter_plot::escaped;
 
@@ -17,9 +17,33 @@ pub(super) fn decimals(values: impl Iterator<Item = f64>, digits: i32) -> usize 
     if largest > 0.0 { (digits - 1 - largest.log10().floor() as i32).clamp(0, 12) as usize } else { 0 }
 }
 
-pub(super) fn rocking(cycles: &[HalfCycle], recorder: &PageRecorder, dt: f64) -> String {
-    if cycles.is_empty() {
+/// Of which blocks the table has no half cycles, and why.
+fn not_listed(left_out: &[LeftOutCycles]) -> String {
+    if left_out.is_empty() {
         return String::new();
+    }
+    let told = left_out.iter().map(|of| {
+        let near = if of.hits == 0 { "none".to_owned() } else { of.hits.to_string() };
+        format!("{} passed φ = 0 {}, with a corner landing near {near} of these", escaped(&of.body), times(of.count))
+    });
+    let told = told.collect::<Vec<_>>().join("; ");
+    format!(
+        "<p id=\"no-half-cycles\" class=\"note\">No half cycles are listed where a corner lands near fewer than half of the passages through φ = 0, as \
+         of what bounces or tumbles: {told}.</p>"
+    )
+}
+
+fn times(count: usize) -> String {
+    if count == 1 { "once".to_owned() } else { format!("{count} times") }
+}
+
+pub(super) fn rocking(
+    (cycles, left_out): &(Vec<HalfCycle>, Vec<LeftOutCycles>),
+    recorder: &PageRecorder,
+    dt: f64,
+) -> String {
+    if cycles.is_empty() {
+        return not_listed(left_out);
     }
     let mut html = "<section id=\"rocking\" class=\"panel\" aria-labelledby=\"rocking-title\">\n\
         <h3 id=\"rocking-title\">Rocking, half cycle by half cycle</h3>\n"
@@ -128,6 +152,8 @@ pub(super) fn rocking(cycles: &[HalfCycle], recorder: &PageRecorder, dt: f64) ->
     } else {
         ""
     });
-    html.push_str("</p>\n</section>");
+    html.push_str("</p>\n");
+    html.push_str(&not_listed(left_out));
+    html.push_str("</section>");
     html
 }
