@@ -344,16 +344,41 @@ impl Panels {
                 y_unit: format!("{}/s", units[1]),
                 least: if c == PHI { [4e-5 * factors[0], 2e-3] } else { factors.map(|factor| 1e-4 * reach * factor) },
                 guides,
-                note: orbits.iter().map(|(_, points)| (strong(points), points.len())).find(|(strong, all)| strong.len() < *all).map(
-                    |(strong, _)| match strong.start {
-                        0 => format!("strong: the first {STRONG} changes of sign of the velocity; pale: all later ones"),
-                        _ => format!("strong: the {STRONG} changes of sign of the velocity about the largest swing; pale: all others"),
-                    },
-                ),
+                note: what_is_strong(orbits.iter().map(|(_, points)| (strong(points), points.len()))),
                 lines: orbits.into_iter().map(line).collect(),
             };
             self.portraits.push(portrait);
         }
+    }
+}
+
+/// Which parts of the blocks' curves are strong, of those that have pale ones: of some it may be the beginning, of others not.
+fn what_is_strong(parts: impl Iterator<Item = (Range<usize>, usize)>) -> Option<String> {
+    let starts: Vec<usize> =
+        parts.filter(|(strong, all)| strong.len() < *all).map(|(strong, _)| strong.start).collect();
+    let which = match (starts.contains(&0), starts.iter().any(|start| *start > 0)) {
+        (false, false) => return None,
+        (true, false) => {
+            return Some(format!("strong: the first {STRONG} changes of sign of the velocity; pale: all later ones"));
+        }
+        (false, true) => "about the largest swing",
+        (true, true) => "about the largest swing of each block, or the first ones",
+    };
+    Some(format!("strong: the {STRONG} changes of sign of the velocity {which}; pale: all others"))
+}
+
+#[cfg(test)]
+mod strong_parts {
+    use super::what_is_strong;
+
+    #[test]
+    fn the_note_on_strong_parts_holds_for_all_blocks() {
+        let note = |parts: &[(std::ops::Range<usize>, usize)]| what_is_strong(parts.iter().cloned());
+        assert_eq!(note(&[(0..9, 9)]), None);
+        let both = note(&[(0..9, 90), (40..50, 90)]).unwrap();
+        assert!(both.contains("about the largest swing of each block, or the first ones"), "{both}");
+        assert!(note(&[(0..9, 90), (0..9, 9)]).unwrap().contains("all later ones"));
+        assert!(!note(&[(40..50, 90)]).unwrap().contains("first"));
     }
 }
 

@@ -11,8 +11,10 @@ use crate::with_digits;
 /// What is to be said of forces in beams that blocks strike.
 pub(crate) fn after_impacts(recorder: &PageRecorder) -> Option<&'static str> {
     let strikes = |contact: &ContactDrawn| contact.beam.is_some() && !contact.has_duration;
-    let on_beams = recorder.scenery.contacts.iter().any(strikes);
-    (recorder.kept.impact_count > 0 && on_beams).then_some("peaks after impacts depend on step and elements")
+    let mut on_beams = (0..).zip(&recorder.scenery.contacts).filter(|(_, contact)| strikes(contact));
+    // Of each pair all are counted, however many are kept.
+    let struck = on_beams.any(|(pair, _)| recorder.kept.density.contains_key(&pair));
+    struck.then_some("peaks after impacts depend on step and elements")
 }
 
 impl Panels {
