@@ -3,9 +3,7 @@
 use crate::alpha_step::AlphaStep;
 use crate::closed_step::THETA;
 use crate::projected_step::ProjectedStep;
-use crate::{
-    DriveMeans, Model, MoreauJeanClosedSettings, Scheme, SettingError, State, StepError, StepReport, Workspace,
-};
+use crate::{Model, MoreauJeanClosedSettings, Scheme, SettingError, State, StepError, StepReport, Workspace};
 
 /// The settings of [`GeneralizedAlpha`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,8 +77,8 @@ impl<const D: usize> Scheme<D> for GeneralizedAlpha<D> {
         Self::NAME
     }
 
-    fn drives_about(&self) -> Option<DriveMeans> {
-        Some(DriveMeans::Over { theta: THETA })
+    fn drives_about(&self) -> Option<f64> {
+        Some(THETA)
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {

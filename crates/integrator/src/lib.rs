@@ -94,7 +94,6 @@ mod projection;
 mod propagator;
 mod registry;
 mod resolved;
-mod rises;
 mod run;
 mod scheme;
 mod signal;
@@ -149,7 +148,7 @@ pub use scheme::{Scheme, SettingError, StepError};
 pub use signal::{Chirp, Formula, Given, Growth, Motion, Product, Signal, SignalError, Sum, Table};
 pub use spring::SpringStep;
 pub use stage::{ContactError, ContactStage, Look, Over, Rule};
-pub use state::{DriveMeans, STEP_ROUNDING, State, StateError, StepSpan, Tally, WarmStart};
+pub use state::{STEP_ROUNDING, State, StateError, StepSpan, Tally, WarmStart};
 pub use stretching::Stretching;
 pub use subsystem::{
     Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, Linearised, PartRows, Rows, Size, Subsystem, Traits,

@@ -2,8 +2,8 @@
 
 use crate::theta_step::{ThetaStep, weights};
 use crate::{
-    Balance, ContactStage, DriveMeans, Keep, Look, Model, Over, PhaseEnd, PhaseKind, Responses, Scheme, SettingError,
-    State, StepError, StepReport, Workspace,
+    Balance, ContactStage, Keep, Look, Model, Over, PhaseEnd, PhaseKind, Responses, Scheme, SettingError, State,
+    StepError, StepReport, Workspace,
 };
 
 /// The settings of [`MoreauJean`].
@@ -77,8 +77,8 @@ impl<const D: usize> Scheme<D> for MoreauJean<D> {
         Self::NAME
     }
 
-    fn drives_about(&self) -> Option<DriveMeans> {
-        Some(DriveMeans::Over { theta: self.settings.theta })
+    fn drives_about(&self) -> Option<f64> {
+        Some(self.settings.theta)
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {

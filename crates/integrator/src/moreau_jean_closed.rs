@@ -1,7 +1,7 @@
 //! The Moreau–Jean step with contacts that stay closed: `moreau-jean-closed` (`docs/schemes.md`).
 
 use crate::closed_step::ClosedStep;
-use crate::{DriveMeans, Model, Scheme, SettingError, State, StepError, StepReport, Workspace};
+use crate::{Model, Scheme, SettingError, State, StepError, StepReport, Workspace};
 
 /// The settings of [`MoreauJeanClosed`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,8 +84,8 @@ impl<const D: usize> Scheme<D> for MoreauJeanClosed<D> {
         Self::NAME
     }
 
-    fn drives_about(&self) -> Option<DriveMeans> {
-        Some(DriveMeans::Over { theta: crate::closed_step::THETA })
+    fn drives_about(&self) -> Option<f64> {
+        Some(crate::closed_step::THETA)
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {

@@ -2,6 +2,7 @@
 
 mod drift;
 mod impact;
+mod jump;
 mod leave;
 mod locate;
 mod missed;
@@ -12,11 +13,12 @@ use crate::factors::Factors;
 use crate::moreau_jean_closed::deepest;
 use crate::theta_step::weights;
 use crate::{
-    Contact, ContactStage, DriveMeans, Keep, Model, MoreauJeanClosedSettings, Part, STEP_ROUNDING, Scheme,
-    SettingError, State, StepError, StepReport, StepSpan, Weights, Workspace,
+    Contact, ContactStage, Keep, Model, MoreauJeanClosedSettings, Part, STEP_ROUNDING, Scheme, SettingError, State,
+    StepError, StepReport, StepSpan, Weights, Workspace,
 };
 use drift::Flights;
 use impact::Strike;
+use jump::Rises;
 use locate::Hit;
 pub(crate) use locate::rate_at;
 use teeter_contact::Outcome;
@@ -39,7 +41,7 @@ impl Default for MoreauJeanLocatedSettings {
 /// What it can't step.
 const FOLLOWERS: &str = "matrices that follow their coordinates: what energy they keep depends on the size of the step";
 
-/// A step is divided at so many jumps, and ends of steep rises, of loads and prescribed accelerations at most.
+/// A step is divided at so many jumps and ends of steep rises of loads at most.
 const MOST_JUMPS: usize = 4;
 
 /// Steps for which a contact with something elastic pressed lately.
@@ -122,6 +124,7 @@ pub struct MoreauJeanLocated<const D: usize> {
     /// they did, as the state's memory holds them.
     lately: Vec<f64>,
     flights: Flights,
+    rises: Rises,
     /// Which subsystems are elastic, and whether any is.
     elastic: Vec<bool>,
     has_elastic: bool,
@@ -170,6 +173,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             stays: Vec::new(),
             lately: Vec::new(),
             flights: Flights::default(),
+            rises: Rises::default(),
             elastic: Vec::new(),
             has_elastic: true,
             has_rigid_pairs: true,
@@ -189,8 +193,8 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         Self::NAME
     }
 
-    fn drives_about(&self) -> Option<DriveMeans> {
-        Some(DriveMeans::Sharp)
+    fn drives_about(&self) -> Option<f64> {
+        Some(THETA)
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {
@@ -221,7 +225,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         let numbers = 3 * contacts + Flights::NUMBERS * flights;
         self.lately.reserve(numbers);
         self.flights.reserve(flights, model.body_count());
-        self.step.step.rises.start(model);
+        self.rises.start(model);
         self.by_forces.resize(model.size().v, 0.0);
         self.in_lowest_bounce.reserve(contacts.min(crate::stage::RESERVED_CONTACTS));
         self.v.resize(model.size().v, 0.0);
@@ -232,8 +236,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         from.warm.reserve(contacts, D);
         from.memory.reserve(contacts);
         self.from = Some(Box::new(from));
-        let jumps =
-            if model.is_driven() || model.parts().iter().any(|part| part.traits.loaded) { MOST_JUMPS } else { 0 };
+        let jumps = if model.parts().iter().any(|part| part.traits.loaded) { MOST_JUMPS } else { 0 };
         work.reserve_phases(model, 2 * Self::MOST_IMPACTS + jumps + 1);
         // A part of a step will need a factor of its own, and an impact that of the masses.
         work.factors(model, MASSES, &state.q, Keep::Pinned)?;
@@ -343,7 +346,6 @@ impl<const D: usize> MoreauJeanLocated<D> {
         self.unlocated = false;
         loop {
             let rest = StepSpan { start: from.t, end: span.end, h: left };
-            self.step.step.rises.look_at(model, &rest, from.dt);
             self.step.begin(model, from, &rest, work)?;
             self.step.of_step = left / span.h;
             if impacts == 0 {
@@ -352,10 +354,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
                     *by_forces = (free - v0) * whole;
                 }
             }
-            // What sticks with the mean of a load, or of the ground's acceleration, may slide with what that is after a jump.
-            // A jump that rounding leaves at an end of what is left is none within it.
+            // Not one that rounding leaves at an end of what is left.
             let margin = STEP_ROUNDING * span.h;
-            let jump = if jumps < MOST_JUMPS { self.step.step.rises.first_within(&rest, margin) } else { None };
+            let jump = if jumps < MOST_JUMPS { self.find_jump(model, &rest, from.dt, margin) } else { None };
             let rest = jump.map_or(rest, |end| StepSpan { end, h: end - from.t, ..rest });
             if jump.is_some() {
                 self.step.begin(model, from, &rest, work)?;

@@ -4,9 +4,7 @@
 use crate::closed_step::THETA;
 use crate::projected_step::ProjectedStep;
 use crate::theta_step::ThetaStep;
-use crate::{
-    DriveMeans, Model, MoreauJeanClosedSettings, Scheme, SettingError, State, StepError, StepReport, Workspace,
-};
+use crate::{Model, MoreauJeanClosedSettings, Scheme, SettingError, State, StepError, StepReport, Workspace};
 
 /// The settings of [`MoreauJeanProjected`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,8 +69,8 @@ impl<const D: usize> Scheme<D> for MoreauJeanProjected<D> {
         Self::NAME
     }
 
-    fn drives_about(&self) -> Option<DriveMeans> {
-        Some(DriveMeans::Over { theta: THETA })
+    fn drives_about(&self) -> Option<f64> {
+        Some(THETA)
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {

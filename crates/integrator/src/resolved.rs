@@ -8,9 +8,7 @@ use crate::closed_step::THETA;
 use crate::moreau_jean_closed::deepest;
 use crate::moreau_jean_located::is_elastic;
 use crate::theta_step::{ThetaStep, weights};
-use crate::{
-    ContactStage, DriveMeans, Keep, Model, Scheme, SettingError, State, StepError, StepReport, StepSpan, Workspace,
-};
+use crate::{ContactStage, Keep, Model, Scheme, SettingError, State, StepError, StepReport, StepSpan, Workspace};
 use teeter_contact::Outcome;
 use teeter_detect::{Candidates, ContactId};
 
@@ -185,8 +183,8 @@ impl<const D: usize> Scheme<D> for Resolved<D> {
         Self::NAME
     }
 
-    fn drives_about(&self) -> Option<DriveMeans> {
-        Some(DriveMeans::Over { theta: THETA })
+    fn drives_about(&self) -> Option<f64> {
+        Some(THETA)
     }
 
     fn start(&mut self, model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), StepError> {

@@ -1,6 +1,6 @@
 //! What every time scheme offers.
 
-use crate::{ContactError, DriveMeans, FactorError, Mismatch, Model, State, StateError, StepReport, Workspace};
+use crate::{ContactError, FactorError, Mismatch, Model, State, StateError, StepReport, Workspace};
 
 /// A time for a message: sums of steps end in digits that say nothing.
 pub(crate) fn few_digits(t: f64) -> f64 {
@@ -102,9 +102,9 @@ pub trait Scheme<const D: usize>: Send + Sync {
     /// The name by which users choose it.
     fn name(&self) -> &'static str;
 
-    /// The means about the end of a step that prescribed velocities are there, as
+    /// The θ with which prescribed velocities at the end of a step are means about it, as
     /// [`State::drive_about`] takes them; `None`, the default, where they are those of that time.
-    fn drives_about(&self) -> Option<DriveMeans> {
+    fn drives_about(&self) -> Option<f64> {
         None
     }
 

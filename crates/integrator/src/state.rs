@@ -2,7 +2,6 @@
 //! checkpoint.
 
 use crate::clock::Clock;
-use crate::rises::Rises;
 use crate::{Ledger, Memory, Model, Vector};
 use teeter_contact::Outcome;
 use teeter_detect::{Candidate, ContactId};
@@ -199,20 +198,6 @@ impl Tally {
 /// A step that ends within this fraction of its size of a given time counts as ending at that time.
 pub const STEP_ROUNDING: f64 = 1e-9;
 
-/// Which means a scheme takes for prescribed velocities at the end of a step (`docs/signals.md`).
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum DriveMeans {
-    /// The mean from θ steps before the end to 1 − θ after it.
-    Over {
-        /// θ, 0 to 1.
-        theta: f64,
-    },
-    /// That of θ = ½ without the jumps of the acceleration, of a scheme that divides its steps there: the velocity that such a jump starts is
-    /// then that of the time itself.
-    Sharp,
-}
-
 /// Start, end and size of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepSpan {
@@ -307,24 +292,13 @@ impl State {
     ///
     /// # Errors
     /// If there are too few or too many velocities.
-    pub fn drive_about<const D: usize>(&mut self, model: &Model<D>, means: DriveMeans) -> Result<(), StateError> {
+    pub fn drive_about<const D: usize>(&mut self, model: &Model<D>, theta: f64) -> Result<(), StateError> {
         let (found, expected) = (self.v.len(), model.size().v);
         if found != expected {
             return Err(StateError::Length { what: "the velocities", found, expected });
         }
         let Self { t, dt, .. } = *self;
-        let (theta, is_sharp) = match means {
-            DriveMeans::Over { theta } => (theta, false),
-            DriveMeans::Sharp => (0.5, true),
-        };
         model.drive_mean_at([t - theta * dt, t + (1.0 - theta) * dt], &mut self.v);
-        if is_sharp && model.is_driven() {
-            let mut rises = Rises::default();
-            rises.look_at(model, &StepSpan { start: t, end: t, h: 0.0 }, dt);
-            for (index, part) in model.parts().iter().enumerate().filter(|(_, part)| part.is_driven()) {
-                rises.sharpen(index, t, &mut self.v[part.v.clone()]);
-            }
-        }
         Ok(())
     }
 

@@ -2,7 +2,6 @@
 //! forces.
 
 use crate::mismatch::Identity;
-use crate::rises::Rises;
 use crate::stretching::{Taken, Tensions};
 use crate::subsystem::{all_finite, dot};
 use crate::{
@@ -30,8 +29,6 @@ pub(crate) struct ThetaStep {
     product: Vec<f64>,
     /// h times the forces at the start of the step, of parts with prescribed velocities.
     impulse: Vec<f64>,
-    /// Where prescribed accelerations jump, for a scheme that looks for that: the means of the velocities are taken without.
-    pub(crate) rises: Rises,
     /// The tension of the parts that stretch.
     tensions: Tensions,
     /// The cutoff with which subsystems that have a motion in closed form take it; `None`: none does.
@@ -217,7 +214,6 @@ impl ThetaStep {
             // short one would jump from it, and push with what the jump takes.
             let dt = state.dt;
             part.system.drive_mean([span.end - theta * dt, span.end + (1.0 - theta) * dt], v_end);
-            self.rises.sharpen(index, span.end, v_end);
             let (jump, pull) = (scratch, &mut self.product[v]);
             for ((jump, v1), v0) in jump.iter_mut().zip(v_end.iter()).zip(v_start) {
                 *jump = v1 - v0;

@@ -20,7 +20,6 @@ use nalgebra::Vector2;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 use teeter_detect::{Polygon, Shape, ShapeError};
-use teeter_integrator::DriveMeans;
 use teeter_rigid::{MassProperties, Rectangle, RigidError};
 
 /// A scene that can be run.
@@ -246,15 +245,14 @@ impl SchemeName {
         }
     }
 
-    /// The means that prescribed velocities are at the end of a step; `None` if they are
+    /// The θ of the mean that gives prescribed velocities at the end of a step; `None` if they are
     /// those at that time.
     #[must_use]
-    pub fn drives_about(self, theta: f64) -> Option<DriveMeans> {
+    pub fn drives_about(self, theta: f64) -> Option<f64> {
         match self {
-            Self::MoreauJean => Some(DriveMeans::Over { theta }),
-            Self::MoreauJeanLocated => Some(DriveMeans::Sharp),
-            Self::MoreauJeanClosed | Self::Resolved => Some(DriveMeans::Over { theta: 0.5 }),
-            Self::MoreauJeanProjected | Self::GeneralizedAlpha => Some(DriveMeans::Over { theta: 0.5 }),
+            Self::MoreauJean => Some(theta),
+            Self::MoreauJeanClosed | Self::MoreauJeanLocated | Self::Resolved => Some(0.5),
+            Self::MoreauJeanProjected | Self::GeneralizedAlpha => Some(0.5),
             Self::EventDriven => None,
         }
     }

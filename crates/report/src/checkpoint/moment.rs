@@ -90,8 +90,8 @@ impl Moment {
         if same_steps {
             state.t = t;
             // Where the step before ended with the mean about this time, the next one goes on from that.
-            if let Some(means) = scene.time.scheme.drives_about(scene.time.theta) {
-                state.drive_about(model, means).map_err(|source| CheckpointError::State { path: path(), source })?;
+            if let Some(theta) = scene.time.scheme.drives_about(scene.time.theta) {
+                state.drive_about(model, theta).map_err(|source| CheckpointError::State { path: path(), source })?;
             }
         } else {
             // They mean nothing to another scheme, or in steps of another size.
