@@ -1,9 +1,12 @@
 //! `teeter solvers`, `teeter solve` and the problems that `teeter run` saves, from outside.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod running;
+
+use running::teeter;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 use teeter_contact::{Block, BlockSparse, Vector, judge};
 use teeter_fclib::{FclibProblem, Info, LocalProblem};
 
@@ -13,10 +16,6 @@ fn folder(test: &str) -> PathBuf {
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     folder
-}
-
-fn teeter(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_teeter")).current_dir(folder).args(arguments).output().unwrap()
 }
 
 fn text(bytes: &[u8]) -> String {

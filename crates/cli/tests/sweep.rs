@@ -2,8 +2,10 @@
 
 #![allow(clippy::unwrap_used)] // a test
 
+mod running;
+
+use running::{done, teeter};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 /// A folder with Housner's block and a sweep file.
 fn study(name: &str, sweep: &str) -> PathBuf {
@@ -15,17 +17,6 @@ fn study(name: &str, sweep: &str) -> PathBuf {
     std::fs::write(folder.join("rocking.toml"), scene).unwrap();
     std::fs::write(folder.join("sweep.toml"), sweep).unwrap();
     folder
-}
-
-fn teeter(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_teeter")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn done(folder: &Path, arguments: &[&str]) -> String {
-    let output = teeter(folder, arguments);
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success(), "{arguments:?}: {told}");
-    told
 }
 
 /// The rows of a table, each as its cells; the first is the header.

@@ -70,12 +70,6 @@
   const sumOf = (points) => points.reduce((total, { tangential }) => tangential.map((f, i) => (f === null ? null : f + (total[i] ?? 0))), []);
   const scaled = (values, factor) => values.map((f) => (f === null ? null : f * factor));
   const active = scenery.contacts.map((_, k) => k).filter((k) => forces.points.some((point) => point.contact === k));
-  /** What a contact is between, what lies on the other first: of two blocks the one that is higher at the start. */
-  const nameOf = ({ block, surface, other }) => {
-    const names = [scenery.blocks[block].name, surface];
-    const height = (k) => frames.blocks[k].y[0];
-    return (other !== null && height(block) < height(other) ? names.reverse() : names).join(" on ");
-  };
   /** The contacts with the hardest impacts, then those with the largest forces, in their order. */
   const strongestContacts = (count) => {
     const most = (k, key) => forces.points.filter((point) => point.contact === k && point[key])
@@ -89,14 +83,14 @@
     const label = htmlElement("label", "", "Forces of ", byId("plots"));
     label.id = "choice";
     const choice = htmlElement("select", "", undefined, label);
-    for (const k of active) choice.append(new Option(nameOf(scenery.contacts[k]), k));
+    for (const k of active) choice.append(new Option(forces.names[k], k));
     choice.addEventListener("change", () => plots.choose(Number(choice.value)));
   }
 
   scenery.contacts.forEach((contact, k) => {
     const points = forces.points.filter((point) => point.contact === k);
     if (!points.length) return;
-    const suffix = scenery.contacts.length > 1 ? `, ${nameOf(contact)}` : "";
+    const suffix = scenery.contacts.length > 1 ? `, ${forces.names[k]}` : "";
     const strikes = points.filter(({ impacts }) => impacts);
     const springs = forces.springs?.includes(k);
     // Colours are for those that touch: of all there would be too many.

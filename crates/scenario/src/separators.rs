@@ -1,6 +1,7 @@
 //! Tables whose columns are separated by semicolons, tabs or blanks, with decimal points or commas.
 
 use std::borrow::Cow;
+use teeter_record::RecordError;
 
 /// The same table with commas between its columns and points in its numbers, in the same lines. A table
 /// that is separated by commas, or has one column, stays as it is.
@@ -10,7 +11,7 @@ use std::borrow::Cow;
 pub(crate) fn with_commas(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
     // Of what is no text, numbers would be told as bytes.
     if let Some((at, byte)) = teeter_record::binary_byte(bytes) {
-        return Err(format!("not a text file: byte {at} is {byte:#04x}"));
+        return Err(RecordError::NotText { at, byte }.to_string());
     }
     // What isn't in UTF-8 has its own message.
     let Ok(text) = std::str::from_utf8(bytes) else { return Ok(Cow::Borrowed(bytes)) };

@@ -32,7 +32,8 @@ struct Rise {
     end: f64,
 }
 
-/// The rises of loads about the time of a step. They depend on the loads and the size of the steps alone, not on where a run has begun.
+/// The rises of loads about the time of a step. They depend on the loads and the size of the steps alone, not on where a run has begun, as
+/// long as the loads have no more breaks than are looked at.
 #[derive(Debug, Default)]
 pub(super) struct Rises {
     /// In the order of their ends.
@@ -130,7 +131,8 @@ impl Rises {
             self.take(0, part, begin);
             self.take(1, part, end);
             let size = size.max(self.largest([0, 1]));
-            self.take(2, part, begin);
+            let [before, _, beside] = &mut self.loads;
+            beside.clone_from(before);
             let mut any = self.keep_those_that_rise(|[before, after, _]| (after - before).abs() > NOTABLE * size);
             for away in [1.0, 2.0, 4.0].map(|times| times * (end - begin)) {
                 if any {

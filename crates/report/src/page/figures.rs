@@ -307,7 +307,7 @@ impl Plots<'_> {
                 continue;
             }
             let mut panels = Vec::new();
-            let name = (scenery.contacts.len() > 1).then(|| self.recorder.upper_and_lower(contact).join(" on "));
+            let name = (scenery.contacts.len() > 1).then(|| self.recorder.pair_name(contact));
             let weight = values(&normal).fold(0.0, f64::max) / self.panels.force_units[pair][0].1;
             let units = self.panels.force_units[pair];
             for ((what, mut lines), (prefix, factor)) in

@@ -239,6 +239,11 @@ impl PageRecorder {
         if below == Some(true) { [names[1], names[0]] } else { names }
     }
 
+    /// What a contact is between, as a name: `upper on lower`.
+    pub(crate) fn pair_name(&self, contact: &ContactDrawn) -> String {
+        self.upper_and_lower(contact).join(" on ")
+    }
+
     /// How many probes the beams have.
     pub(crate) fn probe_count(&self) -> usize {
         self.layout.beams.iter().map(|beam| beam.probes.len()).sum()

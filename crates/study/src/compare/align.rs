@@ -27,6 +27,8 @@ pub struct Alignment {
     pub sign_found: bool,
     /// The quantity by which they were found.
     pub by: Channel,
+    /// Rows in which both motions have that quantity.
+    pub rows: usize,
     /// Mean square difference by which they were found, as a share of the mean squares of both
     /// motions: 0 for equal ones, 1 for unrelated ones.
     pub mismatch: f64,
@@ -107,11 +109,10 @@ pub(crate) fn alternatives_to(
     offset: f64,
     settings: AlignmentSettings,
 ) -> Vec<Alternative> {
-    let Aligned { alignment: Alignment { shift, sign, .. }, alternatives, motion, .. } =
-        align(measured, trace, end, offset, settings);
-    let others = std::iter::once(Alternative { shift, sign, rows: motion.t.len() }).chain(alternatives);
+    let Aligned { alignment, alternatives, motion, .. } = align(measured, trace, end, offset, settings);
+    let Alignment { shift, sign, rows, .. } = alignment;
     let is_chosen = |one: &Alternative| one.sign == chosen.1 && (one.shift - chosen.0).abs() <= motion.interval();
-    others.filter(|one| !is_chosen(one)).collect()
+    std::iter::once(Alternative { shift, sign, rows }).chain(alternatives).filter(|one| !is_chosen(one)).collect()
 }
 
 /// Those of the suspected values that the run doesn't have either.
@@ -155,21 +156,18 @@ fn align_without(
         None => {
             let [as_is, reversed] = [Sign::AsIs, Sign::Reversed].map(seen_from);
             // Of an exact tie, the side as it is.
-            let turned = reversed.2.is_better_than(&as_is.2);
+            let turned = reversed.2.whole().is_better_than(&as_is.2.whole());
             if turned { (reversed, Some(as_is)) } else { (as_is, Some(reversed)) }
         }
     };
     let (sign, motion, fit) = chosen;
-    let list = |sign: Sign, fits: &[ShiftFit]| -> Vec<Alternative> {
-        fits.iter().map(|ShiftFit { shift, rows, .. }| Alternative { shift: *shift, sign, rows: *rows }).collect()
-    };
-    let mut alternatives = list(sign, &fit.as_good);
-    if let Some((sign, _, other)) = other.filter(|(.., other)| other.tells_side && other.is_as_good_as(&fit)) {
-        alternatives.extend(list(sign, &[other.fit]));
-        // Those that fit as well as the best of their side are known; here they are held against the better side.
-        let as_good: Vec<ShiftFit> =
-            other.as_good.iter().filter(|found| found.is_as_good_as(&fit.fit)).copied().collect();
-        alternatives.extend(list(sign, &as_good));
+    let seen_as = |sign: Sign| move |found: &ShiftFit| Alternative { shift: found.shift, sign, rows: found.rows };
+    let mut alternatives: Vec<Alternative> = fit.as_good.iter().map(seen_as(sign)).collect();
+    let is_as_good = |other: &SideFit| other.tells_side && other.whole().is_as_good_as(&fit.whole());
+    if let Some((sign, _, other)) = other.filter(|(.., other)| is_as_good(other)) {
+        // That these fit as well as the best of their side is known; here they are held against the better side.
+        let as_good = other.as_good.iter().filter(|found| found.is_as_good_as(&fit.fit));
+        alternatives.extend(std::iter::once(&other.fit).chain(as_good).map(seen_as(sign)));
     }
     alternatives.sort_by_key(|found| std::cmp::Reverse(found.rows));
     let alignment = Alignment {
@@ -178,6 +176,7 @@ fn align_without(
         sign,
         sign_found: settings.sign.is_none() && fit.tells_side,
         by: fit.by,
+        rows: fit.fit.rows,
         mismatch: fit.fit.mismatch,
     };
     Aligned { alignment, motion, outliers: Vec::new(), alternatives }
@@ -198,13 +197,21 @@ impl ShiftFit {
     const NONE: Self = Self { shift: 0.0, mismatch: f64::INFINITY, rows: 0 };
 
     /// Whether it can't be told from this one, which fits better, with as many rows as they have.
-    pub(crate) fn is_as_good_as(&self, best: &Self) -> bool {
+    fn is_as_good_as(&self, best: &Self) -> bool {
         let spread = (2.0 / self.rows as f64 + 2.0 / best.rows as f64).sqrt();
         self.mismatch.is_finite() && self.mismatch <= (1.0 + DEVIATIONS * spread) * best.mismatch.max(NEGLIGIBLE)
     }
 
-    pub(crate) fn explains_more_than(&self, other: &Self) -> bool {
+    fn explains_more_than(&self, other: &Self) -> bool {
         self.rows as f64 > MORE_ROWS * other.rows as f64
+    }
+
+    /// Whether this is the better one: by its mismatch, or by its rows where that can't tell.
+    pub(crate) fn is_better_than(&self, other: &Self) -> bool {
+        match self.mismatch < other.mismatch {
+            true => !(other.is_as_good_as(self) && other.explains_more_than(self)),
+            false => self.is_as_good_as(other) && self.explains_more_than(other),
+        }
     }
 }
 
@@ -251,20 +258,6 @@ impl SideFit {
     /// Its fit with what tells the side.
     pub(crate) fn whole(&self) -> ShiftFit {
         ShiftFit { mismatch: self.from_here, ..self.fit }
-    }
-
-    /// Whether the other side, which is better, can't be told from this one.
-    fn is_as_good_as(&self, best: &Self) -> bool {
-        self.whole().is_as_good_as(&best.whole())
-    }
-
-    /// Whether this side is the better one: by its mismatch, or by its rows where that can't tell.
-    pub(crate) fn is_better_than(&self, other: &Self) -> bool {
-        let (ours, theirs) = (self.whole(), other.whole());
-        match ours.mismatch < theirs.mismatch {
-            true => !(theirs.is_as_good_as(&ours) && theirs.explains_more_than(&ours)),
-            false => ours.is_as_good_as(&theirs) && ours.explains_more_than(&theirs),
-        }
     }
 }
 

@@ -439,10 +439,7 @@ fn search<'a>(
     ranked.sort_by(|a, b| a.1.mismatch.total_cmp(&b.1.mismatch));
     let Some(&(first, best, ..)) = ranked.first() else { return Err(FitError::NoMotion(why)) };
     // The other side may fit as well, with more rows.
-    let other = ranked
-        .iter()
-        .find(|(side, ..)| *side != first)
-        .filter(|(_, other, ..)| other.is_as_good_as(&best) && other.explains_more_than(&best));
+    let other = ranked.iter().find(|(side, ..)| *side != first).filter(|(_, other, ..)| other.is_better_than(&best));
     let Some(&(side, _, tells_side, _)) = other.or(ranked.first()) else { return Err(FitError::NoMotion(why)) };
     let chosen = objectives.into_iter().nth(side).ok_or(FitError::Interrupted)?;
     let near = ranked.iter().filter(|(other, ..)| *other == side).map(|(.., number)| *number);

@@ -128,7 +128,7 @@ impl Criterion {
     }
 
     /// Whether the cell is that of a run that hasn't got so many impacts, peaks or crossings.
-    pub(crate) fn is_absent(&self, cell: &str, outputs: &[Output]) -> bool {
+    fn is_absent(&self, cell: &str, outputs: &[Output]) -> bool {
         let Self::Above { output: name, .. } = self else { return false };
         let of_event =
             |path: &str| EVENTS.iter().any(|list| path.strip_prefix(list).is_some_and(|rest| rest.starts_with('.')));
@@ -140,7 +140,8 @@ impl Criterion {
     pub(crate) fn absent(&self, cells: &[&str], outputs: &[Output]) -> Option<String> {
         let Self::Above { output, .. } = self else { return None };
         let absent = cells.iter().filter(|cell| self.is_absent(cell, outputs)).count();
-        let (have, count) = if absent == 1 { ("has", "counts") } else { ("have", "count") };
-        (absent > 0).then(|| format!("{} {have} no {output} and {count} as not above.", super::counted(absent as u64)))
+        let count = if absent == 1 { "counts" } else { "count" };
+        (absent > 0)
+            .then(|| format!("{} without any {output} {count} as without the event.", super::counted(absent as u64)))
     }
 }

@@ -106,9 +106,10 @@ fn number(cell: &str) -> Option<f64> {
 /// Writes `results.parquet` to `out`; `open` opens `results.csv`, more than once.
 ///
 /// `case`, numbers of steps, changes and runs are whole numbers, `find.at_low` and `find.at_high`
-/// true or false, `status`, `warnings` and `error` texts. A key that takes whole numbers only has whole numbers. A column of another key or an output holds doubles if each of
-/// its cells is a number, true or false if each is one of these, else texts; an empty cell is null, a
-/// column without any cell one of doubles. The metadata have the units of columns under `units`.
+/// true or false, `status`, `warnings` and `error` texts. A key that takes whole numbers only has
+/// whole numbers. A column of another key or an output holds doubles if each of its cells is a number,
+/// true or false if each is one of these, else texts; an empty cell is null, a column without any cell
+/// one of doubles. The metadata have the units of columns under `units`.
 ///
 /// # Errors
 /// If the text is no table.

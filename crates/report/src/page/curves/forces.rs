@@ -44,9 +44,9 @@ impl ForceCurve {
         }
     }
 
-    /// Takes impulses for those of the force, not of impacts, that are no more than the force beside them gives in a time of `lasting` (s): the mean normal
-    /// force of the nearest stretch without an impulse before, or after. What follows a flight is an impact, however small. Says how many
-    /// stretches lost theirs.
+    /// Drops impulses that are no larger than what the force beside them gives in a time of `lasting` (s): they are its own, not
+    /// those of impacts. The force is the mean normal force of the nearest stretch without an impulse, before or after. An impulse
+    /// that follows a flight is one of an impact, however small. Returns how many stretches lost theirs.
     pub(crate) fn drop_impacts_of_force(&mut self, lasting: f64) -> usize {
         let strikes: Vec<bool> = self.impacts.iter().map(|impulse| *impulse > 0.0).collect();
         let force = |k: usize| (!strikes[k]).then(|| self.normal[k].max(0.0));

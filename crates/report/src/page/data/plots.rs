@@ -148,6 +148,8 @@ struct PortraitSeries {
 #[derive(Serialize)]
 pub(super) struct ForceData {
     borders: Vec<f64>,
+    /// What the contacts are between.
+    names: Vec<String>,
     /// Of the units in which normal and tangential forces are plotted, by contacts: the prefix, and by what N are multiplied.
     units: Vec<[(&'static str, f64); 2]>,
     /// The period of the vibrations of which `mean` has only the slower ones, with its unit.
@@ -264,14 +266,13 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
             state: state.collect(),
         })
     });
-    let hides = |drawn: &ContactDrawn| {
-        panels.forces[drawn.first..drawn.first + drawn.points.len()].iter().flatten().any(|forces| forces.hides_slip)
-    };
-    let alternates = |drawn: &ContactDrawn| {
-        panels.forces[drawn.first..drawn.first + drawn.points.len()].iter().flatten().any(|forces| forces.alternates)
-    };
-    let hiding = recorder.scenery.contacts.iter().enumerate().filter(|(_, drawn)| hides(drawn));
+    let contacts = || recorder.scenery.contacts.iter().enumerate();
+    let forces_of =
+        |drawn: &ContactDrawn| panels.forces[drawn.first..drawn.first + drawn.points.len()].iter().flatten();
+    let hiding = contacts().filter(|(_, drawn)| forces_of(drawn).any(|forces| forces.hides_slip));
+    let alternating = contacts().filter(|(_, drawn)| forces_of(drawn).any(|forces| forces.alternates));
     ForceData {
+        names: recorder.scenery.contacts.iter().map(|contact| recorder.pair_name(contact)).collect(),
         borders: panels.curves.borders().into_iter().map(time).collect(),
         units: panels.force_units.clone(),
         period: with_digits(period, "s", 3),
@@ -284,9 +285,7 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         frictionless: (0..panels.tangential.len()).filter(|pair| !panels.tangential[*pair]).collect(),
         redundant: (0..panels.redundant.len()).filter(|pair| panels.redundant[*pair].forces).collect(),
         shares: (0..panels.redundant.len()).filter(|pair| panels.sums_tangential(*pair)).collect(),
-        alternating: (0..recorder.scenery.contacts.len())
-            .filter(|pair| alternates(&recorder.scenery.contacts[*pair]))
-            .collect(),
+        alternating: alternating.map(|(pair, _)| pair).collect(),
         unseen_slip: hiding.map(|(pair, drawn)| (pair, with_digits(unseen_slip(recorder, drawn), "m", 1))).collect(),
         points: points.collect(),
     }

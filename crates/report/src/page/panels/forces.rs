@@ -46,7 +46,7 @@ impl Panels {
             if points.is_empty() {
                 continue;
             }
-            let name = recorder.upper_and_lower(contact).join(" on ");
+            let name = recorder.pair_name(contact);
             let of = || several.then(|| (name.clone(), "contacts"));
             let normal = largest(points.iter().flat_map(|(_, _, forces)| &forces.normal));
             self.normal[pair] = holds(normal, strongest);

@@ -512,7 +512,7 @@ mod tests {
         };
         let (events, notes) = seen(&study("blow = \"impacts.1.impulse_n\""));
         assert_eq!(events, [false, false, true, false]);
-        assert_eq!(notes, ["2 cases have no blow and count as not above."]);
+        assert_eq!(notes, ["2 cases without any blow count as without the event."]);
         // A block that still moves has come to no rest yet, and one that fell has slid more than any.
         for unknown in ["{ at = \"0.5 s\", of = \"b.phi\" }", "\"rests_from\"", "\"verdict.0.slid\""] {
             let (events, notes) = seen(&study(&format!("blow = {unknown}")));
