@@ -10,6 +10,7 @@ mod falling;
 mod going;
 mod headline;
 mod lying;
+mod sliding;
 mod stance;
 mod standing;
 
@@ -20,8 +21,10 @@ use going::Touched;
 pub(crate) use headline::{headline, percent};
 pub use lying::Side;
 use serde::{Deserialize, Serialize};
+use sliding::Slides;
 use stance::{Edge, Outline, Stance};
 pub use stance::{SharedStances, Way};
+use standing::Settling;
 use teeter_integrator::{Mismatch, Model, PhaseKind, RockingMonitor, State, StepReport};
 use teeter_scenario::scene::{BlockScene, Placement, Scene, StopScene, SupportingBody};
 use teeter_scenario::simulation::Layout;
@@ -49,6 +52,9 @@ const SLID: f64 = 0.01;
 /// A block that turns farther than ever at the end, and got to this part of its critical angle, tips: less may be the bending of a beam. The same part of
 /// it against what carries it tells that it isn't upright there: less is rounding.
 const BEGAN_TO_TIP: f64 = 1e-3;
+
+/// What moves on below a block lets it rest for no longer than this many times its longest pause so far.
+const PAUSES: f64 = 1.5;
 
 /// A block rocks, in a word, if it got to this part of its critical angle.
 pub(crate) const ROCKED: f64 = 0.01;
@@ -126,6 +132,12 @@ pub struct BodyVerdict {
     /// slid farther past its start, where it turned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub farthest: Option<f64>,
+    /// The farthest to the left and to the right of where it stood that it was, m, of one that slid to one side, back, and on again.
+    #[serde(skip)]
+    pub(crate) to_and_fro: Option<[f64; 2]>,
+    /// Whether what is below it moves on as prescribed.
+    #[serde(skip)]
+    pub(crate) is_driven: bool,
     /// How fast it moves at the end relative to what carries it, m/s; of one that slides on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
@@ -180,8 +192,8 @@ pub struct BodyVerdict {
 struct Seen {
     /// The angle that its stance is about, rad; `None` of a block that began in flight and has not settled yet.
     began: Option<f64>,
-    /// Of such a block: since when nothing but a push could turn it over, s, and its angle then, rad.
-    settling: Option<(f64, f64)>,
+    /// Of such a block, while nothing but a push could turn it over.
+    settling: Option<Settling>,
     /// Its angle at the end of the last step, rad.
     angle: f64,
     /// The largest |φ|/α.
@@ -196,6 +208,8 @@ struct Seen {
     fallen: bool,
     /// Since when it is still, s.
     still: Option<f64>,
+    /// How long it was still at most between two motions, s.
+    paused: f64,
     /// Whether its mass centre has been over its beam, and since when it is past an end, s, and which.
     over: bool,
     out: Option<(f64, Way)>,
@@ -205,8 +219,8 @@ struct Seen {
     stands_from: Option<f64>,
     /// Where it began to stand along what carries it, m.
     stood: Option<f64>,
-    /// The farthest from there that it has been to the left and to the right, m.
-    reached: [f64; 2],
+    /// How it has slid from there.
+    slides: Slides,
     /// How high it was at the start, m; of a block that other blocks hold.
     height: Option<f64>,
     /// Since when it is lower than that by more than its thickness, s.
@@ -273,6 +287,10 @@ struct Watched {
     on: Option<SupportingBody>,
     /// Whether its motion is prescribed: nothing becomes of it.
     driven: bool,
+    /// Whether a hump of a beam can touch it between its feet.
+    has_face: bool,
+    /// Until when what moves as prescribed below it does so, s; 0 where nothing does.
+    driven_until: f64,
     /// Its feet, left and right, in its own frame, m; none without a base.
     feet: Option<[[f64; 2]; 2]>,
 }
@@ -304,6 +322,8 @@ impl Watch {
                     Placement::Free { .. } => None,
                 },
                 driven: block.motion.is_given(),
+                has_face: scene.contacts.iter().any(|contact| contact.block == number && contact.sides),
+                driven_until: carrier::driven_below(scene, number).map_or(0.0, |(_, motion)| motion.settles_at()),
                 feet: (block.base() > 0.0).then(|| feet.map(|foot| [corners[foot].x, corners[foot].y])),
             }
         };
@@ -321,6 +341,11 @@ impl Watch {
 }
 
 impl Watched {
+    /// Between its feet, m; infinite without a base.
+    fn base(&self) -> f64 {
+        self.feet.map_or(f64::INFINITY, |[left, right]| right[0] - left[0])
+    }
+
     /// The slope of what carries it against the level of gravity, rad.
     fn slope(&self, q: &[f64]) -> f64 {
         self.carrier.slope(q) - self.outline.as_ref().map_or(0.0, Outline::level)
@@ -330,6 +355,14 @@ impl Watched {
     fn height(&self, layout: &Layout, number: usize, state: &State) -> f64 {
         let q = &state.q[layout.blocks[number].range.clone()];
         self.carrier.height([q[0], q[1]], layout, &state.q)
+    }
+
+    /// How high its mass centre is over what carries it, m: of what stands on a beam over where its feet, or its middle on a hump, would be.
+    fn clearance(&self, layout: &Layout, number: usize, state: &State) -> f64 {
+        let q = &state.q[layout.blocks[number].range.clone()];
+        let (sin, cos) = q[2].sin_cos();
+        let feet = self.feet.map(|feet| feet.map(|[x, y]| q[0] + cos * x - sin * y));
+        self.carrier.clearance([q[0], q[1]], feet, self.has_face, layout, &state.q)
     }
 
     /// Where its base stands along what carries it, m: put flat about the foot on which it is tilted.
@@ -502,16 +535,23 @@ impl Fates {
             let [left, right] = &mut seen.turned;
             (*left, *right) = (left.max(tilt), right.max(-tilt));
             if let Some((from, to)) = seen.stood.zip(watched.place(layout, number, state)) {
-                let [left, right] = &mut seen.reached;
-                (*left, *right) = (left.min(to - from), right.max(to - from));
+                seen.slides.go_to(to - from, SLID * watched.base());
             }
             if let Some(height) = seen.height {
                 let drop = height - watched.height(layout, number, state);
                 seen.dropped = if drop > watched.thickness { seen.dropped.or(Some(t)) } else { None };
             }
-            seen.touched.rise(watched.carrier.clearance([q[0], q[1]], layout, &state.q));
+            seen.touched.rise(watched.clearance(layout, number, state));
             let speed = watched.speed(layout, number, state);
-            seen.still = if speed <= watched.still_speed { seen.still.or(Some(t)) } else { None };
+            seen.still = if speed <= watched.still_speed {
+                seen.still.or(Some(t))
+            } else {
+                // Before it moved for the first time it did not pause.
+                if let Some(since) = seen.still.filter(|since| *since > 0.0) {
+                    seen.paused = seen.paused.max(before - since);
+                }
+                None
+            };
             if let Some(past) = watched.carrier.past_end([q[0], q[1]], layout, &state.q) {
                 seen.out = match past {
                     None => {
@@ -527,8 +567,10 @@ impl Fates {
         }
     }
 
+    /// Since when it rests at the time `t` (s). While what is below it moves on it may only pause, as it did before.
     fn rests(seen: &Seen, watched: &Watched, t: f64) -> Option<f64> {
-        seen.still.filter(|since| t - since >= watched.still_time)
+        let pause = if t < watched.driven_until { PAUSES * seen.paused } else { 0.0 };
+        seen.still.filter(|since| t - since >= watched.still_time.max(pause))
     }
 
     /// What ends the run at the time `t` (s).
@@ -599,9 +641,13 @@ impl Seen {
         });
         let place = watched.place(layout, number, state);
         let slid = self.stood.zip(place).map(|(from, to)| to - from).filter(|_| overturned.is_none() && fell.is_none());
-        let base = watched.feet.map_or(f64::INFINITY, |[left, right]| right[0] - left[0]);
-        let has_slid = slid.is_some_and(|slid| slid.abs() >= SLID * base);
-        let rocked = self.part.is_some_and(|part| part >= ROCKED);
+        let least = SLID * watched.base();
+        let has_slid = slid.is_some_and(|slid| slid.abs() >= least);
+        let to_and_fro = slid.is_some() && self.slides.is_to_and_fro();
+        // One that has come down on a corner and can't turn over any more rocks, though it hasn't settled yet.
+        let settling = self.settling.filter(|settling| state.t - settling.since >= FLAT * watched.still_time);
+        let part = self.part.or(settling.map(|settling| settling.part));
+        let rocked = part.is_some_and(|part| part >= ROCKED);
         // What came down and slid off since doesn't rock any more.
         let only_slides = has_slid && self.rocked.is_some_and(|last| state.t - last >= FLAT * watched.still_time);
         let peak = rocking.and_then(|monitor| {
@@ -609,6 +655,9 @@ impl Seen {
             let largest = || Some(monitor.extreme()).filter(|peak| peak.phi != 0.0);
             monitor.turned().or_else(of_crossings).or_else(largest)
         });
+        // In flight it did not rock.
+        let since = self.stands_from.or(settling.map(|settling| settling.since));
+        let peak = peak.filter(|peak| since.is_none_or(|since| peak.t >= since));
         let bounces = rests.is_none() && {
             let crossed = rocking.and_then(|monitor| monitor.crossings().last()).map(|crossing| crossing.t);
             self.bounces(watched, layout, number, state, crossed)
@@ -622,7 +671,7 @@ impl Seen {
             (None, None, None, Some(t)) => (Fate::Rests, Some(t), None),
             _ if bounces => (Fate::Moves, None, None),
             _ if rocked && !only_slides => (Fate::Rocks, peak.map(|peak| peak.t), None),
-            _ if has_slid => (Fate::Slid, None, None),
+            _ if has_slid || to_and_fro => (Fate::Slid, None, None),
             _ => (Fate::Moves, None, None),
         };
         let lies_on = rests
@@ -645,13 +694,15 @@ impl Seen {
         };
         let not_upright = rocking.filter(|monitor| [Fate::Rocks, Fate::Moves].contains(&what) && monitor.count() == 0);
         let moves = what == Fate::Moves && self.still.is_none();
+        let rides = what == Fate::Moves && self.rides(watched, least);
         let going = moves.then(|| self.going(watched, layout, number, state)).flatten();
+        let going = going.or(rides.then_some(Going::Rides));
         let turning = not_upright.filter(|_| what == Fate::Rocks || (moves && going.is_none())).filter(turns_on);
         // What stands on a beam that bends slowly turns with it.
-        let turns = |_: &&RockingMonitor| what == Fate::Rocks || self.part.is_some_and(|part| part >= BEGAN_TO_TIP);
+        let turns = |_: &&RockingMonitor| what == Fate::Rocks || part.is_some_and(|part| part >= BEGAN_TO_TIP);
         let tips = turning.filter(turns).filter(began_to_tip).map(|_| Way::of(tilt));
         let on_its_way = not_upright.filter(|_| what == Fate::Rocks || tips.is_some()).filter(began_to_tip);
-        let trembles = || self.trembles(slid, SLID * base).filter(|_| moves && turning.is_none());
+        let trembles = || self.trembles(slid, least).filter(|_| moves && turning.is_none());
         let going = going.or_else(trembles);
         BodyVerdict {
             body: layout.blocks[number].name.clone(),
@@ -663,13 +714,15 @@ impl Seen {
             rests_from: rests,
             leans_at: leans.then_some(tilt),
             lies_on,
-            farthest: slid.and_then(|slid| self.farthest(slid, SLID * base)),
+            farthest: slid.and_then(|slid| self.slides.farthest(slid, least)),
+            to_and_fro: to_and_fro.then(|| self.slides.reached()),
+            is_driven: state.t < watched.driven_until,
             slid,
             speed: (what == Fate::Slid && rests.is_none() && self.still.is_none()).then(|| {
                 let [vx, vy, _] = watched.velocity(layout, number, state);
                 vx.hypot(vy)
             }),
-            max_phi_over_alpha: self.part,
+            max_phi_over_alpha: part,
             last_peak: peak.filter(|_| what == Fate::Rocks).map(|peak| peak.phi),
             still_from: self.still.filter(|_| rests.is_none()),
             stands_from: self.stands_from,
@@ -681,14 +734,15 @@ impl Seen {
             is_carried: rests.is_some() && {
                 let q = &state.q[layout.blocks[number].range.clone()];
                 let [vx, vy, spin] = watched.carrier.base_velocity([q[0], q[1]], layout, state);
-                vx.hypot(vy) + watched.reach * spin.abs() > watched.still_speed
+                state.t < watched.driven_until || vx.hypot(vy) + watched.reach * spin.abs() > watched.still_speed
             },
             tumbled: tumbled.filter(|turn| turn.abs() >= TUMBLED && what != Fate::Overturned),
             on_its_way: on_its_way.map(|_| tilt),
             on_what_moves: watched.carrier.word().filter(|_| {
                 let q = &state.q[layout.blocks[number].range.clone()];
                 let [vx, vy, _] = watched.carrier.velocity([q[0], q[1]], layout, state);
-                going.is_some_and(Going::stays) && vx.hypot(vy) > watched.still_speed
+                let moves = state.t < watched.driven_until || vx.hypot(vy) > watched.still_speed;
+                going.is_some_and(Going::stays) && moves
             }),
             going,
             tips,

@@ -119,11 +119,7 @@ impl Scene {
     /// if something never stops, such as a harmonic.
     #[must_use]
     pub fn settles_at(&self) -> f64 {
-        let motions: Vec<f64> = self
-            .motions()
-            .flat_map(|(_, motion)| motion.0.iter().flatten())
-            .map(|axis| axis.history.settles_at())
-            .collect();
+        let motions: Vec<f64> = self.motions().map(|(_, motion)| motion.settles_at()).collect();
         let forces = self.forces.iter().map(|force| force.history.settles_at());
         let loads = self.loads.iter().map(|load| match load.kind {
             LoadKind::Moving { at, speed, .. } if speed != 0.0 => {

@@ -3,7 +3,7 @@
 use super::Way;
 use std::ops::Range;
 use teeter_integrator::State;
-use teeter_scenario::scene::{Placement, Scene, SupportingBody};
+use teeter_scenario::scene::{MotionScene, Placement, Scene, SupportingBody};
 use teeter_scenario::simulation::Layout;
 
 /// Beams bend down by less than this part of their span: what is below that has left them.
@@ -69,9 +69,10 @@ fn support(scene: &Scene, block: usize) -> Option<SupportingBody> {
     }
 }
 
-/// What moves as prescribed below a block, directly or below other blocks; `None` where nothing does.
-pub(super) fn driven_below(scene: &Scene, number: usize) -> Option<Driven> {
-    let ground = || scene.ground.as_ref().filter(|ground| ground.motion.is_given()).map(|_| Driven::Ground);
+/// What moves as prescribed below a block, directly or below other blocks, and how; `None` where nothing does.
+pub(super) fn driven_below(scene: &Scene, number: usize) -> Option<(Driven, &MotionScene)> {
+    let given = |driven: Driven, motion| MotionScene::is_given(motion).then_some((driven, motion));
+    let ground = || scene.ground.as_ref().and_then(|ground| given(Driven::Ground, &ground.motion));
     let mut block = number;
     // At most as many storeys as there are blocks.
     for _ in 0..scene.blocks.len() {
@@ -81,12 +82,12 @@ pub(super) fn driven_below(scene: &Scene, number: usize) -> Option<Driven> {
                 if motion.is_given() {
                     // Of a fixed block it is zero.
                     let moves = motion.0.iter().flatten().any(|axis| axis.amplitude != 0.0);
-                    return moves.then_some(Driven::Block);
+                    return moves.then_some((Driven::Block, motion));
                 }
                 block = below;
             }
             Some(SupportingBody::Beam(beam)) => {
-                return scene.beams[beam].motion.is_given().then_some(Driven::Supports);
+                return given(Driven::Supports, &scene.beams[beam].motion);
             }
             Some(SupportingBody::Ground) => return ground(),
             // In a crowd, or alone.
@@ -244,13 +245,27 @@ impl Carrier {
         }
     }
 
-    /// How high a point is over what carries the block, by what height is over where that bends, m.
-    pub(super) fn clearance(&self, at: [f64; 2], layout: &Layout, q: &[f64]) -> f64 {
+    /// How high a point of a block is over what carries it, by what height is over where that bends: under its `feet` (x, m) or, if a
+    /// hump can touch it, in the middle, whichever is higher; m.
+    pub(super) fn clearance(
+        &self,
+        at: [f64; 2],
+        feet: Option<[f64; 2]>,
+        has_face: bool,
+        layout: &Layout,
+        q: &[f64],
+    ) -> f64 {
         let height = self.height(at, layout, q);
         let On::Beam(beam, position) = &self.root else { return height };
         let place = &layout.beams[*beam];
-        let shape = place.beam.shape_clamped(at[0] - beam_origin(*beam, *position, layout, q)[0]);
-        height - place.deflection(&shape, &q[place.range.clone()]).w
+        let origin = beam_origin(*beam, *position, layout, q)[0];
+        let bent = |x: f64| place.deflection(&place.beam.shape_clamped(x - origin), &q[place.range.clone()]).w;
+        height
+            - match feet.map(|[left, right]| 0.5 * (bent(left) + bent(right))) {
+                Some(feet) if has_face => feet.max(bent(at[0])),
+                Some(feet) => feet,
+                None => bent(at[0]),
+            }
     }
 
     /// Whether a block with its mass centre at a point is below everything that could hold it.

@@ -1,9 +1,10 @@
 //! How a block moves that does so at the end of a run and has no other fate: it bounces, rolls, slides or falls (`docs/verdict.md`).
 
 use super::standing::SETTLED;
-use super::{Fates, ROCKED, Seen, Watch, Watched};
+use super::{FLAT, Fates, ROCKED, Seen, Watch, Watched};
 use serde::{Deserialize, Serialize};
 use teeter_integrator::{State, StepReport};
+use teeter_scenario::scene::SupportingBody;
 use teeter_scenario::simulation::Layout;
 
 /// How a block moves.
@@ -21,6 +22,8 @@ pub(crate) enum Going {
     Vibrates,
     /// It stays where it stands, and is shaken there.
     Trembles,
+    /// It stays where it stands on another block, which moves.
+    Rides,
     /// A round one turns about as fast as it goes, in the sense of its way.
     Rolls,
     /// A round one goes without turning so.
@@ -29,13 +32,14 @@ pub(crate) enum Going {
 
 impl Going {
     /// All of them, in the order in which many blocks are told.
-    pub(super) const ALL: [Self; 8] = [
+    pub(super) const ALL: [Self; 9] = [
         Self::Falls,
         Self::Flies,
         Self::Bounces,
         Self::Hops,
         Self::Vibrates,
         Self::Trembles,
+        Self::Rides,
         Self::Rolls,
         Self::Slides,
     ];
@@ -49,6 +53,7 @@ impl Going {
             Self::Hops => "at rest but for hops of less than a ten-thousandth of its size",
             Self::Vibrates => "still vibrating on its contacts",
             Self::Trembles => "still trembling where it stands",
+            Self::Rides => "standing still on the block below it",
             Self::Rolls => "still rolling",
             Self::Slides => "still sliding",
         }
@@ -56,7 +61,7 @@ impl Going {
 
     /// Whether it stays where it is on what carries it.
     pub(super) fn stays(self) -> bool {
-        matches!(self, Self::Hops | Self::Vibrates | Self::Trembles)
+        matches!(self, Self::Hops | Self::Vibrates | Self::Trembles | Self::Rides)
     }
 
     /// The same of several, after "are".
@@ -65,6 +70,7 @@ impl Going {
             Self::Hops => "at rest but for hops of less than a ten-thousandth of their sizes",
             Self::Vibrates => "still vibrating on their contacts",
             Self::Trembles => "still trembling where they stand",
+            Self::Rides => "standing still on the blocks below them",
             other => other.word(),
         }
     }
@@ -106,6 +112,9 @@ const BOUNCES: f64 = 0.02;
 
 /// What has been on its springs for this many times as long as its last flight took doesn't bounce any more.
 const STAYS: f64 = 2.0;
+
+/// What has stayed on what carries it for this many times as long as its last flight took has not been thrown up again: bounces become shorter.
+const AGAIN: f64 = 4.0;
 
 /// Up to this many times the speed of what is still, √(gR)/10, a motion on springs is a vibration.
 const VIBRATES: f64 = 100.0;
@@ -174,7 +183,9 @@ impl Seen {
         if watched.on_springs && stays && watched.speed(layout, number, state) <= VIBRATES * watched.still_speed {
             return Some(Going::Vibrates);
         }
-        if landed.is_some_and(|landed| t - landed <= SETTLED * watched.still_time) {
+        // One that can't turn over any more stays on the corner on which it landed, sooner than that.
+        let least = if self.settling.is_some() { FLAT } else { SETTLED };
+        if landed.is_some_and(|landed| t - landed <= (least * watched.still_time).min(AGAIN * flown)) {
             return Some(Going::Bounces);
         }
         if !watched.is_round {
@@ -232,10 +243,10 @@ impl Seen {
         (stands && stays).then_some(Going::Trembles)
     }
 
-    /// Where it turned, the farther of two, if it has slid back by more than `least` (m) from there to where it is, `slid` (m).
-    pub(super) fn farthest(&self, slid: f64, least: f64) -> Option<f64> {
-        let back = |reached: &f64| (reached - slid).abs();
-        let farther = self.reached.into_iter().filter(|reached| reached.abs() > least && back(reached) > least);
-        farther.max_by(|a, b| a.abs().total_cmp(&b.abs()))
+    /// Whether it has never moved on the block that it stands on: neither slid by a tenth of `least` (m), nor turned against it by what can be seen.
+    pub(super) fn rides(&self, watched: &Watched, least: f64) -> bool {
+        let is_on_block = matches!(watched.on, Some(SupportingBody::Block(_)));
+        let [left, right] = self.turned;
+        is_on_block && self.began.is_some() && self.slides.most() < 0.1 * least && left.max(right) < HOPS
     }
 }

@@ -147,6 +147,13 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         }
         Fate::Rests => beside(format!("came to rest{side}{moving}{at}")),
         Fate::Slid if of.rests_from.is_some() => beside(format!("{slid} and came to rest{side}{moving}{at}")),
+        Fate::Slid if of.to_and_fro.is_some() => {
+            let on = if of.is_driven { moving_base(scene, &[of]) } else { "" };
+            let reached = of.to_and_fro.unwrap_or_default();
+            let still = if of.is_driven || of.still_from.is_none() { String::new() } else { still(scene, of, end) };
+            let how = if still.is_empty() { "slides" } else { "slid" };
+            beside(format!("{how} to and fro{on}, {}{still}", up_to(scene, of, reached)))
+        }
         Fate::Slid if of.still_from.is_some() => beside(format!("{slid}{}", still(scene, of, end))),
         Fate::Slid => beside(format!("slides on, {slid} so far")),
         Fate::Rocks if of.turns_with.is_some() => {
@@ -170,7 +177,9 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         Fate::Moves if of.still_from == Some(0.0) && scene.settles_at() < end => {
             beside("has been still, too short a run to tell whether it rests".to_owned())
         }
-        Fate::Moves if of.still_from.is_some() => beside(format!("moved{}", still(scene, of, end))),
+        Fate::Moves if of.still_from.is_some() && of.going != Some(Going::Rides) => {
+            beside(format!("moved{}", still(scene, of, end)))
+        }
         Fate::Moves => match of.going {
             // What bounces doesn't slide, but may be elsewhere.
             Some(Going::Bounces) if has_slid(scene, of) => {
@@ -226,7 +235,7 @@ fn still(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
 fn moving_base(scene: &Scene, bodies: &[&BodyVerdict]) -> &'static str {
     let below = |of: &&BodyVerdict| {
         let number = scene.blocks.iter().position(|block| block.name == of.body)?;
-        driven_below(scene, number)
+        driven_below(scene, number).map(|(driven, _)| driven)
     };
     let driven: Vec<Option<Driven>> = bodies.iter().map(below).collect();
     match driven.as_slice() {
@@ -242,6 +251,18 @@ fn moving_base(scene: &Scene, bodies: &[&BodyVerdict]) -> &'static str {
 fn side_below(of: &BodyVerdict) -> Option<String> {
     let leans = of.leans_at.map(|phi| format!(" at φ = {}", angle(phi)));
     of.lies_on.as_ref().map(|side| format!(" on its {}", side.word())).or(leans)
+}
+
+/// How far to the left and to the right of its start a block has been (m), in words, as far as that is told.
+fn up_to(scene: &Scene, of: &BodyVerdict, reached: [f64; 2]) -> String {
+    let block = scene.blocks.iter().find(|block| block.name == of.body);
+    let least = block.map_or(0.0, |block| super::SLID * block.base());
+    let told = |way: f64| format!("{} {}", with_unit(way.abs(), "m"), direction(scene, way).side);
+    match reached.map(|way| (way.abs() >= least).then(|| told(way))) {
+        [Some(left), Some(right)] => format!("up to {left} and {right} its start"),
+        [Some(way), None] | [None, Some(way)] => format!("up to {way} its start"),
+        [None, None] => "near its start".to_owned(),
+    }
 }
 
 fn has_slid(scene: &Scene, of: &BodyVerdict) -> bool {
@@ -338,6 +359,9 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
         tell(&these, &what, "");
     }
     let sliding: Vec<_> = of(&[Fate::Slid]).into_iter().filter(|of| of.rests_from.is_none()).collect();
+    let shaken = |of: &&BodyVerdict| of.to_and_fro.is_some() && (of.is_driven || of.still_from.is_none());
+    let (to_and_fro, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(shaken);
+    tell(&to_and_fro, if to_and_fro.len() == 1 { "slides to and fro" } else { "slide to and fro" }, "");
     let (still, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(|of| of.still_from.is_some());
     tell(&sliding, if sliding.len() == 1 { "slides on" } else { "slide on" }, "");
     let of_moves: Vec<_> =

@@ -1,7 +1,8 @@
 //! Which blocks stand at the start, and when one that began in flight has settled on a side (`docs/verdict.md`).
 
 use super::stance::Stance;
-use super::{KnownStance, Seen, Watched, Way};
+use super::{KnownStance, ROCKED, Seen, Watched, Way};
+use serde::{Deserialize, Serialize};
 use teeter_detect::{BodyId, Candidate};
 use teeter_integrator::{Mismatch, Model, State};
 use teeter_scenario::scene::SupportingBody;
@@ -10,6 +11,19 @@ use teeter_scenario::simulation::Layout;
 /// A block that began in flight has settled when it was unable to turn over by itself for this many √(R/g). In free fall as long as that its speed
 /// is at some time 2 √(gR) or more, and then its energy 2 m g R, which no point of no return asks for: so it has landed.
 pub(super) const SETTLED: f64 = 4.0;
+
+/// What is known of a block that began in flight, while nothing but a push could turn it over.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Settling {
+    /// Since when, s.
+    pub since: f64,
+    /// Its angle then, rad.
+    pub angle: f64,
+    /// The largest |φ|/α since, of the swing in which it settles.
+    pub part: f64,
+    /// When that was last large enough to be called rocking, s.
+    pub rocked: Option<f64>,
+}
 
 /// Which blocks stand at the start: those that were placed on ground, a beam or a block whose motion is prescribed, or are joined to one of them by
 /// closed contacts, a chain of them; and those so little above what stands that by their fall and their speed they can't turn over. With them, which
@@ -128,7 +142,7 @@ impl Seen {
         }
         let within = |stance: &Stance| stance.right.top < angle && angle < stance.left.top;
         // After a pause only the angle is known, from which it was found.
-        let known = self.stance.0.or_else(|| self.settling.map(|(_, at)| outline.stance(at)));
+        let known = self.stance.0.or_else(|| self.settling.map(|settling| outline.stance(settling.angle)));
         let stance = match known {
             Some(None) => return,
             Some(Some(stance)) if within(&stance) => stance,
@@ -144,17 +158,22 @@ impl Seen {
             self.settling = None;
             return;
         }
-        let (since, at) = match self.settling {
-            Some(known) => known,
-            None => {
-                self.stance = KnownStance(Some(outline.stance(angle)));
-                *self.settling.insert((state.t, angle))
-            }
-        };
-        if state.t - since >= SETTLED * watched.still_time {
+        let slope = watched.slope(&state.q);
+        let settling = self.settling.get_or_insert_with(|| {
+            self.stance = KnownStance(Some(outline.stance(angle)));
+            Settling { since: state.t, angle, part: 0.0, rocked: None }
+        });
+        let stance = self.stance.0.flatten().unwrap_or(stance);
+        if let Some(part) = stance.part(angle, slope) {
+            settling.part = settling.part.max(part);
+            settling.rocked = if part >= ROCKED { Some(state.t) } else { settling.rocked };
+        }
+        let settled = *settling;
+        if state.t - settled.since >= SETTLED * watched.still_time {
             // Found anew from this angle, as it will be after a pause.
-            (self.began, self.settling, self.stance) = (Some(at), None, KnownStance(None));
-            self.stands_from = Some(since);
+            (self.began, self.settling, self.stance) = (Some(settled.angle), None, KnownStance(None));
+            (self.part, self.rocked) = (Some(settled.part), settled.rocked);
+            self.stands_from = Some(settled.since);
             self.stood = watched.place(layout, number, state);
         }
     }

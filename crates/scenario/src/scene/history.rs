@@ -233,6 +233,12 @@ impl MotionScene {
         self.0.iter().all(Option::is_some)
     }
 
+    /// From which time on it no longer changes, s; infinite if it never stops.
+    #[must_use]
+    pub fn settles_at(&self) -> f64 {
+        self.0.iter().flatten().map(|axis| axis.history.settles_at()).fold(0.0, f64::max)
+    }
+
     /// The motions of x, y and rotation; those not prescribed are zero.
     #[must_use]
     pub fn motions(&self) -> [Motion; 3] {

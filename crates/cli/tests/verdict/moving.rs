@@ -1,0 +1,83 @@
+//! What slides, rides or rests on what moves: the same is said wherever the run ends.
+
+use super::{Ran, folder, written};
+
+/// A statue on a pedestal on harmonically shaken ground, up to a time, with a friction of the pedestal.
+fn statue(name: &str, end: &str, friction: f64) -> Ran {
+    let text = format!(
+        "[time]\nend = '{end}'\nstep = '1 ms'\n[ground]\nmotion = {{ acceleration = ['3 m/s^2', '0 m/s^2'], signal = 'shake' }}\n\
+         [signal.shake]\nshape = 'harmonic'\nfrequency = '1.5 Hz'\n[material.marble]\ndensity = '2700 kg/m^3'\n\
+         [block.pedestal]\nmaterial = 'marble'\nwidth = '40 cm'\nheight = '40 cm'\ndepth = '40 cm'\non = 'ground'\nat = '0 m'\n\
+         [block.statue]\nmaterial = 'marble'\nwidth = '20 cm'\nheight = '80 cm'\ndepth = '20 cm'\non = 'pedestal'\nat = '0 m'\n\
+         [contact.base]\nbetween = ['pedestal', 'ground']\nfriction = {friction}\n\
+         [contact.top]\nbetween = ['statue', 'pedestal']\nfriction = 0.5\n"
+    );
+    written(&folder(&format!("verdict-moving-{name}")), &text)
+}
+
+fn headline(ran: &Ran) -> &str {
+    ran.summary["headline"].as_str().unwrap()
+}
+
+#[test]
+fn what_ground_shakes_slides_to_and_fro_whenever_the_run_ends() {
+    for (name, friction, ends) in
+        [("slips", 0.2, ["4 s", "4.1 s", "4.2 s", "4.3 s"]), ("sticks", 0.25, ["4 s", "4.15 s", "4.25 s", "4.4 s"])]
+    {
+        for (number, end) in ends.into_iter().enumerate() {
+            let ran = statue(&format!("{name}-{number}"), end, friction);
+            let slips: Vec<f64> =
+                ran.column("pedestal.x").iter().zip(ran.column("ground.x")).map(|(x, ground)| x - ground).collect();
+            let farthest = slips.iter().fold(0.0_f64, |most, slip| most.max((slip - slips[0]).abs()));
+            let told = headline(&ran);
+            assert!(told.starts_with("`pedestal` slides to and fro on the moving ground, up to "), "{end}: {told}");
+            let told_farthest = told.split_once("up to ").unwrap().1.split_once(' ').unwrap().0;
+            let told_farthest: f64 = told_farthest.parse().unwrap();
+            // Rows are fewer than steps.
+            assert!((1e-3 * told_farthest - farthest).abs() < 0.02 * farthest, "{end}: {told}, {farthest}");
+            assert!(told.contains("`statue` is standing still on the block below it, on ground that moves"), "{told}");
+            assert!(ran.verdict("pedestal")["rests_from"].is_null(), "{told}");
+        }
+    }
+}
+
+#[test]
+fn a_slide_up_a_slope_and_down_again_is_not_to_and_fro() {
+    let text = "[time]\nend = '1 s'\nstep = '1 ms'\n[ground]\nincline = '25 deg'\n[material.oak]\ndensity = '700 kg/m^3'\n\
+                [block.crate]\nmaterial = 'oak'\nwidth = '20 cm'\nheight = '10 cm'\ndepth = '10 cm'\non = 'ground'\nat = '0 m'\n\
+                velocity = ['2.7189 m/s', '1.2679 m/s']\n[contact.base]\nbetween = ['crate', 'ground']\nfriction = 0.3\n";
+    let ran = written(&folder("verdict-moving-slope"), text);
+    assert!(headline(&ran).contains("up the slope, then"), "{}", headline(&ran));
+}
+
+/// A slab that ground with a period of 5/6 s overturns.
+fn slab(name: &str, end: &str) -> Ran {
+    let text = format!(
+        "[time]\nend = '{end}'\nstep = '1 ms'\n[ground]\nmotion = {{ acceleration = ['2.8 m/s^2', '0 m/s^2'], signal = 'shake' }}\n\
+         [signal.shake]\nshape = 'harmonic'\nfrequency = '1.2 Hz'\n[material.marble]\ndensity = '2700 kg/m^3'\n\
+         [block.slab]\nmaterial = 'marble'\nwidth = '25 cm'\nheight = '1 m'\ndepth = '20 cm'\non = 'ground'\nat = '0 m'\n\
+         [contact.base]\nbetween = ['slab', 'ground']\nfriction = 0.6\n"
+    );
+    written(&folder(&format!("verdict-moving-{name}")), &text)
+}
+
+#[test]
+fn ground_that_stands_for_an_instant_still_moves() {
+    // After whole periods the ground is still.
+    for (number, end) in ["10 s", "10.2 s", "15 s"].into_iter().enumerate() {
+        let ran = slab(&format!("slab-{number}"), end);
+        assert!(headline(&ran).contains("side on the moving ground at t = "), "{end}: {}", headline(&ran));
+    }
+}
+
+#[test]
+fn the_swing_in_which_a_block_settles_counts() {
+    let text = "[time]\nend = '1.5 s'\nstep = '500 us'\n[ground]\n[material.oak]\ndensity = '700 kg/m^3'\n[block.brick]\n\
+                material = 'oak'\nwidth = '10 cm'\nheight = '20 cm'\ndepth = '10 cm'\nposition = ['0 m', '0.35 m']\nangle = '20 deg'\n\
+                [contact.base]\nbetween = ['brick', 'ground']\nfriction = 0.4\nrestitution = 0.3\n";
+    let ran = written(&folder("verdict-moving-brick"), text);
+    let (t, phi) = (ran.column("t"), ran.column("brick.phi"));
+    let swing = t.iter().zip(&phi).filter(|(t, _)| **t > 0.45).fold(0.0_f64, |most, (_, phi)| most.max(phi.abs()));
+    let told = ran.verdict("brick")["max_phi_over_alpha"].as_f64().unwrap();
+    assert!((told - swing / 0.5_f64.atan()).abs() < 1e-3, "{told}, {swing}");
+}
