@@ -372,15 +372,16 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
     tell(&moving, if moving.len() == 1 { "still moves" } else { "still move" }, "");
     let others = || {
         let stayed = verdict.iter().filter(|of| !matches!(of.what, Fate::Fell | Fate::Overturned));
-        let share = |of: &BodyVerdict| {
-            bases.iter().find(|base| is_on(of, base)).and_then(|base| base.column).or(of.max_phi_over_alpha)
-        };
-        stayed.map(share)
+        stayed.map(|of| {
+            let column = bases.iter().find(|base| is_on(of, base)).and_then(|base| base.column);
+            (of, column.or(of.max_phi_over_alpha))
+        })
     };
-    let largest = others().flatten().fold(0.0, f64::max);
-    let of_all = parts.len() == 1 && others().all(|part| part.is_some());
+    let known = others().filter_map(|(of, part)| Some((of, part?)));
+    let largest = known.max_by(|a, b| a.1.total_cmp(&b.1));
+    let of_all = parts.len() == 1 && others().all(|(_, part)| part.is_some());
     let mut text = parts.join("; ");
-    if largest >= super::ROCKED {
+    if let Some((of, largest)) = largest.filter(|(_, largest)| *largest >= super::ROCKED) {
         let whose = match of_all {
             true if rocking.is_empty() && matches!(bases[..], [base] if base.column.is_some()) => "the column",
             true => "all",
@@ -389,7 +390,8 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
             // Those of which it is unknown have none.
             false => "all",
         };
-        text.push_str(&format!("; largest φ/α of {whose} {}", part(largest)));
+        let of = if whose == "the column" { String::new() } else { format!(" (`{}`)", of.body) };
+        text.push_str(&format!("; largest φ/α of {whose} {}{of}", part(largest)));
     }
     if collapsed { format!("collapsed: {text}") } else { text }
 }

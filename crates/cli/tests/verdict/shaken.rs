@@ -12,7 +12,7 @@ fn statue(name: &str, end: &str, friction: f64) -> Ran {
          [contact.base]\nbetween = ['pedestal', 'ground']\nfriction = {friction}\n\
          [contact.top]\nbetween = ['statue', 'pedestal']\nfriction = 0.5\n"
     );
-    written(&folder(&format!("verdict-moving-{name}")), &text)
+    written(&folder(&format!("verdict-shaken-{name}")), &text)
 }
 
 fn headline(ran: &Ran) -> &str {
@@ -46,7 +46,7 @@ fn a_slide_up_a_slope_and_down_again_is_not_to_and_fro() {
     let text = "[time]\nend = '1 s'\nstep = '1 ms'\n[ground]\nincline = '25 deg'\n[material.oak]\ndensity = '700 kg/m^3'\n\
                 [block.crate]\nmaterial = 'oak'\nwidth = '20 cm'\nheight = '10 cm'\ndepth = '10 cm'\non = 'ground'\nat = '0 m'\n\
                 velocity = ['2.7189 m/s', '1.2679 m/s']\n[contact.base]\nbetween = ['crate', 'ground']\nfriction = 0.3\n";
-    let ran = written(&folder("verdict-moving-slope"), text);
+    let ran = written(&folder("verdict-shaken-slope"), text);
     assert!(headline(&ran).contains("up the slope, then"), "{}", headline(&ran));
 }
 
@@ -58,7 +58,7 @@ fn slab(name: &str, end: &str) -> Ran {
          [block.slab]\nmaterial = 'marble'\nwidth = '25 cm'\nheight = '1 m'\ndepth = '20 cm'\non = 'ground'\nat = '0 m'\n\
          [contact.base]\nbetween = ['slab', 'ground']\nfriction = 0.6\n"
     );
-    written(&folder(&format!("verdict-moving-{name}")), &text)
+    written(&folder(&format!("verdict-shaken-{name}")), &text)
 }
 
 #[test]
@@ -75,7 +75,7 @@ fn the_swing_in_which_a_block_settles_counts() {
     let text = "[time]\nend = '1.5 s'\nstep = '500 us'\n[ground]\n[material.oak]\ndensity = '700 kg/m^3'\n[block.brick]\n\
                 material = 'oak'\nwidth = '10 cm'\nheight = '20 cm'\ndepth = '10 cm'\nposition = ['0 m', '0.35 m']\nangle = '20 deg'\n\
                 [contact.base]\nbetween = ['brick', 'ground']\nfriction = 0.4\nrestitution = 0.3\n";
-    let ran = written(&folder("verdict-moving-brick"), text);
+    let ran = written(&folder("verdict-shaken-brick"), text);
     let (t, phi) = (ran.column("t"), ran.column("brick.phi"));
     let swing = t.iter().zip(&phi).filter(|(t, _)| **t > 0.45).fold(0.0_f64, |most, (_, phi)| most.max(phi.abs()));
     let told = ran.verdict("brick")["max_phi_over_alpha"].as_f64().unwrap();
