@@ -7,6 +7,7 @@
 mod carrier;
 mod columns;
 mod falling;
+mod floor;
 mod going;
 mod headline;
 mod lying;
@@ -16,6 +17,7 @@ mod standing;
 
 use carrier::Carrier;
 use falling::Joints;
+use floor::Floor;
 pub(crate) use going::Going;
 use going::Touched;
 pub(crate) use headline::{headline, percent};
@@ -258,6 +260,7 @@ pub struct Fates {
 #[derive(Debug)]
 pub(crate) struct Watch {
     blocks: Vec<Watched>,
+    floor: Floor,
     stop: StopScene,
     /// Before it nothing ends the run by rest, s.
     settles_at: f64,
@@ -329,6 +332,7 @@ impl Watch {
         };
         Self {
             blocks: scene.blocks.iter().enumerate().map(watched).collect(),
+            floor: Floor::of(scene, layout),
             stop: scene.time.stop,
             settles_at: scene.settles_at(),
         }
@@ -488,6 +492,7 @@ impl Fates {
     }
 
     fn look(&mut self, watch: &Watch, layout: &Layout, before: f64, state: &State) {
+        let floor = watch.floor.depth(layout, &state.q);
         for (number, (seen, watched)) in self.blocks.iter_mut().zip(&watch.blocks).enumerate() {
             if watched.driven {
                 continue;
@@ -562,7 +567,7 @@ impl Fates {
                     Some(_) => None,
                 };
             }
-            let sunk = watched.carrier.is_below([q[0], q[1]], watched.reach, layout, &state.q);
+            let sunk = floor.is_above([q[0], q[1]], watched.reach, layout, &state.q);
             seen.sunk = if sunk { seen.sunk.or(Some(t)) } else { None };
         }
     }

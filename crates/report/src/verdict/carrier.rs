@@ -6,9 +6,6 @@ use teeter_integrator::State;
 use teeter_scenario::scene::{MotionScene, Placement, Scene, SupportingBody};
 use teeter_scenario::simulation::Layout;
 
-/// Beams bend down by less than this part of their span: what is below that has left them.
-const BENT: f64 = 0.5;
-
 /// Beams whose heights differ by less than this part of a block's size continue each other.
 const LEVEL: f64 = 0.01;
 
@@ -17,14 +14,14 @@ const LEVEL: f64 = 0.01;
 pub(super) struct Carrier {
     /// What it stands on, or is joined to by its first contact.
     on: On,
-    /// What that stands on, and so on down: what moves under the block.
+    /// What that stands on, and so on down to what no block carries or whose motion is prescribed: what moves under the block.
     root: On,
     /// The slope of fixed ground, or of a profile under the block relative to moving ground, rad.
     incline: f64,
     /// Other beams that continue the one it stands on, by their numbers, and where their left ends are while their supports don't move, m.
     beside: Vec<(usize, [f64; 2])>,
-    /// The lowest that anything is at which could hold a block: none without beams or ground.
-    floor: Floor,
+    /// The slope of the scene's ground while it doesn't move, rad; `None` without ground.
+    ground: Option<f64>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -37,20 +34,6 @@ enum On {
     Beam(usize, [f64; 2]),
     /// A block, by the indices of its coordinates.
     Block(Range<usize>),
-}
-
-#[derive(Debug)]
-enum Floor {
-    None,
-    /// Ground: its lowest point from its origin, m, and its slope while it doesn't move, rad.
-    Ground {
-        lowest: f64,
-        slope: f64,
-    },
-    /// Beams: as low as they may bend, m.
-    Beams {
-        lowest: f64,
-    },
 }
 
 /// What moves as prescribed below a block.
@@ -108,12 +91,16 @@ impl Carrier {
             None => layout.ground.clone().map_or(On::Fixed, On::Ground),
         };
         let mut root = support(number);
+        let free = |of: Option<SupportingBody>| match of {
+            Some(SupportingBody::Block(below)) if !scene.blocks[below].motion.is_given() => Some(below),
+            _ => None,
+        };
         // At most as many storeys as there are blocks.
         for _ in 0..scene.blocks.len() {
-            let Some(SupportingBody::Block(below)) = root else { break };
+            let Some(below) = free(root) else { break };
             root = support(below);
         }
-        if matches!(root, Some(SupportingBody::Block(_))) {
+        if free(root).is_some() {
             root = None;
         }
         // The tilt is measured from what carries the block: the rest of the angle is its slope.
@@ -124,28 +111,12 @@ impl Carrier {
         } else {
             0.0
         };
-        let floor = match &scene.ground {
-            Some(ground) => {
-                let lowest = ground
-                    .profile
-                    .as_ref()
-                    .map_or(0.0, |profile| profile.points().map(|point| point.y).fold(f64::INFINITY, f64::min));
-                Floor::Ground { lowest, slope: ground.incline }
-            }
-            None if scene.beams.is_empty() => Floor::None,
-            None => Floor::Beams {
-                lowest: scene
-                    .beams
-                    .iter()
-                    .map(|beam| beam.position[1] - BENT * beam.spec.span)
-                    .fold(f64::INFINITY, f64::min),
-            },
-        };
         let beside = match support(number) {
             Some(SupportingBody::Beam(beam)) => continued(scene, number, beam),
             _ => Vec::new(),
         };
-        Self { on: of(support(number)), root: of(root), incline, beside, floor }
+        let ground = scene.ground.as_ref().map(|ground| ground.incline);
+        Self { on: of(support(number)), root: of(root), incline, beside, ground }
     }
 
     /// The slope of the ground that carries the block, rad; 0 of other carriers.
@@ -175,14 +146,15 @@ impl Carrier {
         match self.root {
             On::Ground(_) => Some("ground"),
             On::Beam(..) => Some("a beam"),
-            On::Fixed | On::Block(_) => None,
+            On::Block(_) => Some("a block"),
+            On::Fixed => None,
         }
     }
 
     /// Velocity and angular velocity of what carries the block, where the block is.
     pub(super) fn velocity(&self, at: [f64; 2], layout: &Layout, state: &State) -> [f64; 3] {
         match &self.root {
-            On::Ground(range) => {
+            On::Ground(range) | On::Block(range) => {
                 let (q, v) = (&state.q[range.clone()], &state.v[range.clone()]);
                 [v[0] - v[2] * (at[1] - q[1]), v[1] + v[2] * (at[0] - q[0]), v[2]]
             }
@@ -195,7 +167,7 @@ impl Carrier {
                 let rate = place.deflection(&shape, &state.v[place.range.clone()]);
                 [vx, vy + rate.w, rate.slope]
             }
-            On::Fixed | On::Block(_) => [0.0; 3],
+            On::Fixed => [0.0; 3],
         }
     }
 
@@ -236,11 +208,12 @@ impl Carrier {
         Some(past(beam, position).filter(|_| !is_on_another()))
     }
 
-    /// How high a point is: over the ground, or over the supports of the beam that carries the block, or by its y, m.
+    /// How high a point is: over the supports of the beam, or over the driven block, that carries the block, or over the ground, or by its y, m.
     pub(super) fn height(&self, at: [f64; 2], layout: &Layout, q: &[f64]) -> f64 {
-        match (&self.floor, &self.root) {
-            (Floor::Ground { slope, .. }, _) => over_ground(at, *slope, layout, q),
-            (_, On::Beam(beam, position)) => at[1] - beam_origin(*beam, *position, layout, q)[1],
+        match (&self.root, self.ground) {
+            (On::Beam(beam, position), _) => at[1] - beam_origin(*beam, *position, layout, q)[1],
+            (On::Block(range), _) => at[1] - q[range.start + 1],
+            (_, Some(slope)) => over_ground(at, slope, layout, q),
             _ => at[1],
         }
     }
@@ -267,19 +240,10 @@ impl Carrier {
                 None => bent(at[0]),
             }
     }
-
-    /// Whether a block with its mass centre at a point is below everything that could hold it.
-    pub(super) fn is_below(&self, at: [f64; 2], reach: f64, layout: &Layout, q: &[f64]) -> bool {
-        match self.floor {
-            Floor::None => false,
-            Floor::Beams { lowest } => at[1] + reach < lowest,
-            Floor::Ground { lowest, slope } => over_ground(at, slope, layout, q) < lowest,
-        }
-    }
 }
 
 /// How high a point is over the origin of the ground, across its slope (rad, while it doesn't move), m.
-fn over_ground(at: [f64; 2], slope: f64, layout: &Layout, q: &[f64]) -> f64 {
+pub(super) fn over_ground(at: [f64; 2], slope: f64, layout: &Layout, q: &[f64]) -> f64 {
     let still = ([0.0; 2], slope);
     let ground = layout.ground.as_ref();
     let (origin, slope) = ground.map_or(still, |range| ([q[range.start], q[range.start + 1]], q[range.start + 2]));
@@ -317,18 +281,19 @@ fn centre(scene: &Scene, block: usize) -> Option<[f64; 2]> {
     }
 }
 
-/// The beams that a block can touch and that lie level with the one it stands on: it may slide on to them.
+/// The beams that a block can touch and that lie level with the one it stands on at the start: it may slide on to them.
 fn continued(scene: &Scene, block: usize, beam: usize) -> Vec<(usize, [f64; 2])> {
     let level = LEVEL * scene.blocks[block].radius();
+    let height = |beam: usize| scene.beams[beam].start_position()[1];
     let others = scene.contacts.iter().filter(|contact| contact.block == block);
     let others = others.filter_map(|contact| match contact.surface {
         SupportingBody::Beam(other) if other != beam => Some((other, scene.beams[other].position)),
         _ => None,
     });
-    others.filter(|(_, position)| (position[1] - scene.beams[beam].position[1]).abs() <= level).collect()
+    others.filter(|(other, _)| (height(*other) - height(beam)).abs() <= level).collect()
 }
 
 /// The left end of a beam's axis, which moves with its supports, m.
-fn beam_origin(beam: usize, [x, y]: [f64; 2], layout: &Layout, q: &[f64]) -> [f64; 2] {
+pub(super) fn beam_origin(beam: usize, [x, y]: [f64; 2], layout: &Layout, q: &[f64]) -> [f64; 2] {
     layout.beams[beam].supports.clone().map_or([x, y], |range| [x + q[range.start], y + q[range.start + 1]])
 }
