@@ -38,7 +38,7 @@ impl Default for EventDrivenSettings {
 /// Gaps are located to this, m, or to rounding where that is more.
 const GAP_TOLERANCE: f64 = 1e-14;
 
-/// A place or velocity below this (m or rad, m/s or rad/s) has errors measured by this.
+/// A place, velocity or acceleration below this (m or rad, per s or s²) has errors measured by this.
 const FLOOR: f64 = 1e-3;
 
 /// Bounces that rise by less than so many tolerances of gaps are none.

@@ -214,8 +214,10 @@ impl EventDriven {
                 let correction = self.smooth.project(model, (t + h).min(last), &mut y, work);
                 self.rk.end = y;
                 let Correction { of_places, of_velocities } = correction?;
-                if !(of_places <= SHIFT && of_velocities <= JUMP) {
-                    // Nothing smooth leads to the contacts that are there: a beam's crest under a base may be another one by now.
+                let is_known = crate::subsystem::all_finite(&self.rk.end);
+                if !(is_known && of_places <= SHIFT && of_velocities <= JUMP) {
+                    // Nothing smooth leads to the contacts that are there: a beam's crest under a base may be another one by now. Or no
+                    // forces keep the contacts as they are.
                     if duration > 0.0 {
                         self.end_phase(model, from, t, duration, work)?;
                     }

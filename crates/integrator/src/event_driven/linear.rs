@@ -58,8 +58,9 @@ impl Linear {
     }
 
     /// Solves; of several solutions of a symmetric system that with the least Σ w a x², w the `weights`
-    /// and a the diagonal. Whether the system has a solution, up to rounding.
-    pub(super) fn solve(&mut self, weights: impl Fn(usize) -> f64) -> bool {
+    /// and a the diagonal. Whether the system has a solution, up to the rounding of the right sides, at least of one of
+    /// size `least`.
+    pub(super) fn solve(&mut self, least: f64, weights: impl Fn(usize) -> f64) -> bool {
         let n = self.n;
         let own = |a: &[f64], i: usize| a[i * n + i].abs();
         let largest = (0..n).map(|i| own(&self.a, i)).fold(0.0, f64::max);
@@ -91,7 +92,7 @@ impl Linear {
             self.substitute();
             self.x.iter_mut().zip(&self.rest).for_each(|(x, dx)| *x += dx);
         }
-        let given = self.b.iter().fold(0.0, |given: f64, b| given.max(b.abs()));
+        let given = self.b.iter().fold(least, |given: f64, b| given.max(b.abs()));
         // A contradiction makes x large.
         let size = |i: usize| -> f64 {
             let row = &self.a[i * n..(i + 1) * n];
@@ -163,7 +164,7 @@ mod tests {
     #[test]
     fn a_regular_system_is_solved_to_rounding() {
         let mut linear = system([[0.0, 2.0, 1.0], [3.0, 1.0, 0.5], [1.0, 1.0, 4.0]], [7.0, 6.5, 15.0]);
-        assert!(linear.solve(|_| 1.0));
+        assert!(linear.solve(0.0, |_| 1.0));
         assert!(linear.solution().iter().zip([1.0, 2.0, 3.0]).all(|(x, y)| (x - y).abs() < 1e-14), "{linear:?}");
     }
 
@@ -171,13 +172,16 @@ mod tests {
     fn of_several_solutions_the_least_is_found_and_a_contradiction_is_none() {
         let singular = [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 2.0]];
         let mut linear = system(singular, [3.0, 3.0, 4.0]);
-        assert!(linear.solve(|_| 1.0));
+        assert!(linear.solve(0.0, |_| 1.0));
         assert!(linear.solution().iter().zip([1.5, 1.5, 2.0]).all(|(x, y)| (x - y).abs() < 1e-7), "{linear:?}");
         // What is not determined has the digits that the shift leaves.
-        assert!(linear.solve(|i| [1.0, 0.5, 1.0][i]));
+        assert!(linear.solve(0.0, |i| [1.0, 0.5, 1.0][i]));
         assert!(linear.solution().iter().zip([1.0, 2.0, 2.0]).all(|(x, y)| (x - y).abs() < 1e-7), "{linear:?}");
-        assert!(!system(singular, [3.0, 3.1, 4.0]).solve(|_| 1.0));
+        assert!(!system(singular, [3.0, 3.1, 4.0]).solve(0.0, |_| 1.0));
+        // What is left where forces cancel is rounding.
+        assert!(!system(singular, [3e-36, 2e-36, 4e-36]).solve(0.0, |_| 1.0));
+        assert!(system(singular, [3e-36, 2e-36, 4e-36]).solve(1e-3, |_| 1.0));
         // Accelerations that stick to 1e-8 don't contradict each other.
-        assert!(system(singular, [3.0, 3.0 + 3e-8, 4.0]).solve(|_| 1.0));
+        assert!(system(singular, [3.0, 3.0 + 3e-8, 4.0]).solve(0.0, |_| 1.0));
     }
 }

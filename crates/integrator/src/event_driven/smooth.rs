@@ -350,7 +350,8 @@ impl Smooth {
             Mode::Stick => 0.0,
             Mode::Slide(sign) => -contact.friction * sign,
         };
-        let solved = self.solve(|contact| contact.mode == Mode::Stick, slope, |contact| -contact.free, weight);
+        // Where a load cancels a weight, what is left of accelerations is rounding.
+        let solved = self.solve(FLOOR, |contact| contact.mode == Mode::Stick, slope, |contact| -contact.free, weight);
         self.contacts.iter_mut().for_each(|contact| contact.force = Vector::zeros());
         for (&(k, r), x) in self.unknowns.iter().zip(self.linear.solution()) {
             // Without a solution no step is right: what isn't a number is refused.
@@ -364,10 +365,11 @@ impl Smooth {
     }
 
     /// Solves J M⁻¹ Jᵀ x = b for the normal and, of contacts with `both`, the tangential components; a
-    /// contact without has a tangential one in proportion to the normal one. Whether there is a solution;
-    /// it is in the order of `unknowns`.
+    /// contact without has a tangential one in proportion to the normal one. Whether there is a solution, up to
+    /// the rounding of right sides of `least`; it is in the order of `unknowns`.
     fn solve(
         &mut self,
+        least: f64,
         both: impl Fn(&Pressing) -> bool,
         slope: impl Fn(&Pressing) -> f64,
         right: impl Fn(&Pressing) -> Vector<2>,
@@ -388,7 +390,7 @@ impl Smooth {
                 linear.set(i, j, block[(r, c)] + own);
             }
         }
-        linear.solve(|i| {
+        linear.solve(least, |i| {
             let (k, r) = unknowns[i];
             if r == 0 { 1.0 } else { weight(&contacts[k]) }
         })
@@ -505,7 +507,7 @@ impl Smooth {
         }
         let mut correction = Correction::default();
         if self.contacts.iter().any(|contact| contact.free[0] != 0.0)
-            && self.solve(|_| false, |_| 0.0, |contact| contact.free, |_| 1.0)
+            && self.solve(0.0, |_| false, |_| 0.0, |contact| contact.free, |_| 1.0)
         {
             self.push_with_solution();
             self.a.fill(0.0);
@@ -514,7 +516,7 @@ impl Smooth {
             model.move_along(&self.q_probe, &self.a, 1.0, &mut y[..nq]);
             correction.of_places = largest_change(&self.q_probe, &y[..nq]);
         }
-        if self.solve(|contact| contact.mode == Mode::Stick, |_| 0.0, |contact| -contact.u, |_| 1.0) {
+        if self.solve(0.0, |contact| contact.mode == Mode::Stick, |_| 0.0, |contact| -contact.u, |_| 1.0) {
             self.push_with_solution();
             // What the contacts had of velocities is what they lose.
             self.v.copy_from_slice(&y[nq..nq + nv]);

@@ -46,6 +46,27 @@ fn a_block_takes_off_from_ground_that_falls_away_at_its_time() {
     }
 }
 
+/// Where the load cancels the weight, what is left of the feet's accelerations is rounding, of which no two corners have the same.
+#[test]
+fn a_block_with_rounded_corners_takes_off_where_a_load_exceeds_its_weight() {
+    let (width, height, radius) = (0.3_f64, 0.18_f64, 0.02_f64);
+    let mass = 1000.0 * 0.1 * (width * height - (4.0 - PI) * radius * radius);
+    let (load, rise, end) = (150.0, 0.2, 0.3);
+    let more = "rounding = '2 cm'\non = 'ground'\nat = '0 m'\n[force.pull]\non = 'b'\nforce = ['0 N', '150 N']\nsignal = 's'\n\
+                [signal.s]\nshape = 'ramp'\nduration = '0.2 s'";
+    let scene = block("0.3 s", ["30 cm", "18 cm"], more, "friction = 0.5");
+    // The load rises by this much a second, in parts of the mass.
+    let rate = load / rise / mass;
+    let (flown, rest) = (rise - G / rate, end - rise);
+    let (y, v) = (rate * flown.powi(3) / 6.0, rate * flown * flown / 2.0);
+    let exact = 0.5 * height + y + v * rest + 0.5 * (load / mass - G) * rest * rest;
+    for step in ["100 us", "1 ms", "3 ms", "50 ms"] {
+        let state = run(&scene, step).state;
+        let off = state.q[1] - exact;
+        assert!(off.abs() < 1e-12 && state.q[2].abs() < 1e-12, "{step}: {off:e} m off, turned by {:e}", state.q[2]);
+    }
+}
+
 #[test]
 fn a_slide_ends_at_its_time_and_place() {
     let scene = block(
