@@ -45,6 +45,24 @@ fn what_stands_on_a_beam_has_not_sunk_wherever_its_supports_are() {
     }
 }
 
+/// The next beam continues the first where that is at the start, and doesn't where that would be without its displacement.
+#[test]
+fn what_slides_on_to_the_next_beam_leaves_the_first_where_they_are_not_level() {
+    for (name, second, wanted) in [("next-level", "-80 cm", "slid"), ("next-higher", "0 cm", "left")] {
+        let next = BEAM.replace("[beam.t]", "[beam.u]");
+        let text = format!(
+            "{BEAM}motion = {{ displacement = ['0 m', '-80 cm'], signal = 's' }}\n{CONSTANT}\
+             {next}position = ['36 cm', '{second}']\n\
+             {PLATE}on = 't'\nat = '30 cm'\nvelocity = ['1 m/s', '0 m/s']\n{}{}",
+            contact(["b", "t"]),
+            contact(["b", "u"])
+        );
+        let ran = ran(name, &text.replace("friction = 0.5", "friction = 0.3"));
+        assert_eq!(what(&ran).0, wanted, "{name}: {}", ran.summary["headline"]);
+        assert!(*ran.column("b.x").last().unwrap() > 0.36, "{name}: it is past the end of the first");
+    }
+}
+
 /// Of two things that could hold it, the lower one counts, whatever it is.
 #[test]
 fn what_stands_lower_than_the_ground_or_a_beam_has_not_sunk() {
