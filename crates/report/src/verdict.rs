@@ -730,7 +730,7 @@ impl Seen {
             max_phi_over_alpha: part,
             last_peak: peak.filter(|_| what == Fate::Rocks).map(|peak| peak.phi),
             still_from: self.still.filter(|_| rests.is_none()),
-            stands_from: self.stands_from,
+            stands_from: since,
             turned: self
                 .began
                 .filter(|_| what == Fate::Overturned)

@@ -245,7 +245,7 @@ fn what_tumbles_has_no_half_cycles_and_a_run_too_short_says_so() {
     };
     // It turns to and fro about the upright as it hits the ground, without ever standing.
     let flies = "position = ['0 m', '10 cm']\nangle = '8 deg'\nspin = '-2 rad/s'";
-    let tumbling = run("tumbling", &scene("500 ms", "6 cm", flies));
+    let tumbling = run("tumbling", &scene("300 ms", "6 cm", flies));
     assert!(!tumbling.summary.crossings.is_empty());
     let stands = tumbling.summary.max_phi_over_alpha.is_some();
     assert!(!stands && teeter_report::half_cycles(&tumbling.page, &tumbling.summary).is_empty());
