@@ -230,6 +230,18 @@ pub trait Dynamics<const D: usize>: Send + Sync {
         f64::INFINITY
     }
 
+    /// How many loads there are whose breaks [`Dynamics::next_load_break`] tells apart; it never changes. One, the default, if it doesn't.
+    fn load_count(&self) -> usize {
+        1
+    }
+
+    /// The first time after `t` (s) at which load number `load` isn't smooth, s. A scheme that looks for jumps of loads compares the breaks of one
+    /// load with each other. The default takes [`Dynamics::next_break`].
+    fn next_load_break(&self, load: usize, t: f64) -> f64 {
+        let _ = load;
+        self.next_break(t)
+    }
+
     /// vᵀC v, the power that damping dissipates, W. The default multiplies by C, in `scratch`,
     /// which is as long as the velocities; override it if the sum can be had for less.
     fn damping_power(&self, q: &[f64], v: &[f64], scratch: &mut [f64]) -> f64 {

@@ -330,6 +330,14 @@ impl Dynamics<2> for BeamBody {
         loads.chain(supports).fold(f64::INFINITY, f64::min)
     }
 
+    fn load_count(&self) -> usize {
+        self.loads.len()
+    }
+
+    fn next_load_break(&self, load: usize, t: f64) -> f64 {
+        self.loads.get(load).map_or(f64::INFINITY, |load| load.next_break(&self.beam, t))
+    }
+
     fn drive_mean(&self, times: [f64; 2], v: &mut [f64]) {
         if let Some(supports) = &self.supports {
             v[self.beam.dofs()..].copy_from_slice(&supports.mean_velocities(times));

@@ -179,6 +179,14 @@ impl Dynamics<2> for Blocks {
         loads.chain(self.motions.iter().map(|motion| motion.next_break(t))).fold(f64::INFINITY, f64::min)
     }
 
+    fn load_count(&self) -> usize {
+        self.loads.len()
+    }
+
+    fn next_load_break(&self, load: usize, t: f64) -> f64 {
+        self.loads.get(load).map_or(f64::INFINITY, |load| load.signal.next_break(t))
+    }
+
     fn drive_mean(&self, [from, to]: [f64; 2], v: &mut [f64]) {
         for (velocity, motion) in self.driven.iter().zip(&self.motions) {
             v[*velocity] = motion.mean_velocity(from, to);

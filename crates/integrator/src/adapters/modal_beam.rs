@@ -357,6 +357,19 @@ impl Dynamics<2> for ModalBeam {
         loads.chain(signals).chain(supports).fold(f64::INFINITY, f64::min)
     }
 
+    fn load_count(&self) -> usize {
+        self.loads.len() + self.signals.len()
+    }
+
+    fn next_load_break(&self, load: usize, t: f64) -> f64 {
+        match self.loads.get(load) {
+            Some(load) => load.next_break(self.beam(), t),
+            None => {
+                self.signals.get(load - self.loads.len()).map_or(f64::INFINITY, |load| load.next_break(self.beam(), t))
+            }
+        }
+    }
+
     fn drive_mean(&self, times: [f64; 2], v: &mut [f64]) {
         if let Some(supports) = &self.supports {
             v[self.coordinates()..].copy_from_slice(&supports.mean_velocities(times));

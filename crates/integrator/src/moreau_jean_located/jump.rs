@@ -6,8 +6,9 @@ use crate::{Model, Part, StepSpan};
 /// A load jumps where it changes by more than this part of its size, also a step before and after: the rest is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Breaks that are looked at in the length of a step. A table with more rows than that in a step isn't followed by its steps anyway.
-const MOST_BREAKS: f64 = 64.0;
+/// Breaks of a load that are looked at in a step, as counted from t = 0. A table with more rows than that in a step isn't followed by its steps
+/// anyway.
+const MOST_BREAKS: u32 = 64;
 
 /// A rise that lasts longer than this part of a step is slow: the mean of the step misses little of it.
 const LONGEST_RISE: f64 = 0.5;
@@ -22,31 +23,43 @@ const STEEPNESS: f64 = 4.0;
 /// A rise that changes the loads by less than this part of their size isn't looked at, nor the last digit of a table.
 const NOTABLE: f64 = 1e-2;
 
-/// So many rises are held about a step; further ones are not looked at.
-const MOST_RISES: usize = 16;
+/// Room for so many rises is reserved at the start.
+const USUAL_RISES: usize = 32;
 
-/// A time in which a load changes at once, s; of a jump both ends are the same.
+/// A time in which a load on a part changes at once, s; of a jump both ends are the same.
 #[derive(Clone, Copy, Debug)]
 struct Rise {
     begin: f64,
     end: f64,
 }
 
-/// The rises of loads about the time of a step. They depend on the loads and the size of the steps alone, not on where a run has begun, as
-/// long as the loads have no more breaks than are looked at.
-#[derive(Debug, Default)]
-pub(super) struct Rises {
-    /// In the order of their ends.
-    found: Vec<Rise>,
-    /// In steps of this size, s.
-    step: f64,
-    /// All breaks from here on have been looked at, s,
-    from: f64,
-    /// up to here.
+/// How far the breaks of one load have been looked at.
+#[derive(Clone, Copy, Debug)]
+struct Cursor {
+    /// The part of the model.
+    part: usize,
+    /// The number of its load.
+    load: usize,
+    /// Up to this time, s.
     until: f64,
     /// Whether there is a break there.
     at_break: bool,
-    /// The loads at three times; memory.
+    /// Breaks up to there in its step, as counted from t = 0.
+    breaks: u32,
+}
+
+/// The rises of loads about the time of a step, each found among the breaks of one load, whatever the others do. They depend on the loads and
+/// the size of the steps alone, not on where a run has begun.
+#[derive(Debug, Default)]
+pub(super) struct Rises {
+    found: Vec<Rise>,
+    /// In steps of this size, s.
+    step: f64,
+    /// All that end from here on have been found, s.
+    from: f64,
+    /// Of each load.
+    cursors: Vec<Cursor>,
+    /// The loads on a part at three times; memory.
     loads: [Vec<f64>; 3],
 }
 
@@ -54,44 +67,60 @@ impl Rises {
     /// Forgets all, and takes memory for a model.
     pub(super) fn start<const D: usize>(&mut self, model: &Model<D>) {
         self.found.clear();
-        self.found.reserve(MOST_RISES);
+        self.cursors.clear();
         self.step = 0.0;
-        self.loads.iter_mut().for_each(|loads| loads.reserve(model.size().v));
+        self.cursors.reserve(loaded(model).map(|(_, part)| part.system.load_count()).sum());
+        self.found.reserve(if loaded(model).next().is_some() { USUAL_RISES } else { 0 });
+        let largest = loaded(model).map(|(_, part)| part.v.len()).max().unwrap_or(0);
+        self.loads.iter_mut().for_each(|loads| loads.reserve(largest));
     }
 
     /// Looks at the breaks about a step, or the rest of one.
     fn look_at<const D: usize>(&mut self, model: &Model<D>, rest: &StepSpan, step: f64) {
         // A rise that ends in the step has begun later than that.
         let early = rest.start - step;
-        if !(self.step == step && self.from <= early && self.until > rest.start) {
+        if self.step != step || self.from > early {
+            // From the end of a whole step on, so that as many breaks are looked at wherever a run begins.
+            (self.step, self.from) = (step, (whole_steps(early, step) - 1.0) * step);
             self.found.clear();
-            (self.step, self.from, self.until, self.at_break) = (step, early, early, false);
+            self.cursors.clear();
+            for (part, count) in loaded(model).map(|(index, part)| (index, part.system.load_count())) {
+                let at = |load| Cursor { part, load, until: self.from, at_break: false, breaks: 0 };
+                self.cursors.extend((0..count).map(at));
+            }
         }
-        if self.found.first().is_some_and(|rise| rise.end < early) {
+        if self.found.iter().any(|rise| rise.end < early) {
             self.found.retain(|rise| rise.end >= early);
             self.from = early;
         }
         // A break at the end of a step is between two steps, whatever rounding says.
         let late = rest.end - nudge(rest.end);
-        let mut left = (MOST_BREAKS * ((late - self.until) / step).ceil().max(1.0)) as usize;
-        while self.until < late {
-            if left == 0 {
-                (self.until, self.at_break) = (late, false);
-                return;
+        for at in 0..self.cursors.len() {
+            while self.cursors[at].until < late {
+                self.cursors[at] = self.look_on(&model.parts()[self.cursors[at].part], self.cursors[at]);
             }
-            left -= 1;
-            let loaded = model.parts().iter().filter(|part| part.traits.loaded);
-            let (begin, end) =
-                (self.until, loaded.map(|part| part.system.next_break(self.until)).fold(f64::INFINITY, f64::min));
-            let is_short = self.at_break && end - begin <= LONGEST_RISE * step;
-            if is_short && self.found.len() < MOST_RISES && self.is_steep(model, [begin, end], step) {
-                self.found.push(Rise { begin, end });
-            }
-            if end < f64::INFINITY && self.found.len() < MOST_RISES && self.is_jump(model, end, step) {
-                self.found.push(Rise { begin: end, end });
-            }
-            (self.until, self.at_break) = (end, true);
         }
+    }
+
+    /// Looks at the next break of a load on a part.
+    fn look_on<const D: usize>(&mut self, part: &Part<D>, from: Cursor) -> Cursor {
+        let (step, begin, end) = (self.step, from.until, part.system.next_load_break(from.load, from.until));
+        if end == f64::INFINITY {
+            return Cursor { until: end, ..from };
+        }
+        let steps = whole_steps(begin, step);
+        let is_same_step = end <= steps * step;
+        if is_same_step && from.breaks == MOST_BREAKS {
+            return Cursor { until: steps * step, at_break: false, breaks: 0, ..from };
+        }
+        let is_short = from.at_break && end - begin <= LONGEST_RISE * step;
+        if is_short && self.is_steep(part, [begin, end]) {
+            self.found.push(Rise { begin, end });
+        }
+        if self.is_jump(part, end) {
+            self.found.push(Rise { begin: end, end });
+        }
+        Cursor { until: end, at_break: true, breaks: if is_same_step { from.breaks + 1 } else { 1 }, ..from }
     }
 
     /// Leaves the loads on a part at a time (s) in one of the three.
@@ -107,49 +136,45 @@ impl Rises {
         self.loads[one].iter().chain(&self.loads[other]).fold(0.0, |largest, load| largest.max(load.abs()))
     }
 
-    /// Whether a load isn't the same on both sides of a time `t` (s), in comparison with what it is a `step` (s) before and after.
-    fn is_jump<const D: usize>(&mut self, model: &Model<D>, t: f64, step: f64) -> bool {
-        let nudge = nudge(t);
-        model.parts().iter().filter(|part| part.traits.loaded).any(|part| {
-            let mut size = 0.0_f64;
-            for [early, late] in [[t - step, t + step], [t - nudge, t + nudge]] {
-                self.take(0, part, early);
-                self.take(1, part, late);
-                size = size.max(self.largest([0, 1]));
-            }
-            let [before, after, _] = &self.loads;
-            before.iter().zip(after).any(|(before, after)| (after - before).abs() > ROUNDING * size)
-        })
+    /// Whether a load on a part isn't the same on both sides of a time `t` (s), in comparison with what it is a step before and after.
+    fn is_jump<const D: usize>(&mut self, part: &Part<D>, t: f64) -> bool {
+        let (step, nudge) = (self.step, nudge(t));
+        let mut size = 0.0_f64;
+        for [early, late] in [[t - step, t + step], [t - nudge, t + nudge]] {
+            self.take(0, part, early);
+            self.take(1, part, late);
+            size = size.max(self.largest([0, 1]));
+        }
+        let [before, after, _] = &self.loads;
+        before.iter().zip(after).any(|(before, after)| (after - before).abs() > ROUNDING * size)
     }
 
-    /// Whether a load rises steeply between two breaks, or falls.
-    fn is_steep<const D: usize>(&mut self, model: &Model<D>, [begin, end]: [f64; 2], step: f64) -> bool {
-        model.parts().iter().filter(|part| part.traits.loaded).any(|part| {
-            self.take(0, part, begin - step);
-            self.take(1, part, end + step);
-            let size = self.largest([0, 1]);
-            self.take(0, part, begin);
-            self.take(1, part, end);
-            let size = size.max(self.largest([0, 1]));
-            let [before, _, beside] = &mut self.loads;
-            beside.clone_from(before);
-            let mut any = self.keep_those_that_rise(|[before, after, _]| (after - before).abs() > NOTABLE * size);
-            for away in [1.0, 2.0, 4.0].map(|times| times * (end - begin)) {
-                if any {
-                    self.take(2, part, begin - away);
-                    any = self.keep_those_that_rise(|[before, after, early]| {
-                        (after - before).abs() > STEEPNESS * (before - early).abs()
-                    });
-                }
-                if any {
-                    self.take(2, part, end + away);
-                    any = self.keep_those_that_rise(|[before, after, late]| {
-                        (after - before).abs() > STEEPNESS * (late - after).abs()
-                    });
-                }
+    /// Whether a load on a part rises steeply between two breaks, or falls.
+    fn is_steep<const D: usize>(&mut self, part: &Part<D>, [begin, end]: [f64; 2]) -> bool {
+        self.take(0, part, begin - self.step);
+        self.take(1, part, end + self.step);
+        let size = self.largest([0, 1]);
+        self.take(0, part, begin);
+        self.take(1, part, end);
+        let size = size.max(self.largest([0, 1]));
+        let [before, _, beside] = &mut self.loads;
+        beside.clone_from(before);
+        let mut any = self.keep_those_that_rise(|[before, after, _]| (after - before).abs() > NOTABLE * size);
+        for away in [1.0, 2.0, 4.0].map(|times| times * (end - begin)) {
+            if any {
+                self.take(2, part, begin - away);
+                any = self.keep_those_that_rise(|[before, after, early]| {
+                    (after - before).abs() > STEEPNESS * (before - early).abs()
+                });
             }
-            any
-        })
+            if any {
+                self.take(2, part, end + away);
+                any = self.keep_those_that_rise(|[before, after, late]| {
+                    (after - before).abs() > STEEPNESS * (late - after).abs()
+                });
+            }
+        }
+        any
     }
 
     /// Lets the others of the loads end as they began; whether any is left. They are given at the beginning, at the end, and at the third
@@ -165,6 +190,22 @@ impl Rises {
             }
         }
         any
+    }
+}
+
+/// The parts of a model that have loads.
+fn loaded<const D: usize>(model: &Model<D>) -> impl Iterator<Item = (usize, &Part<D>)> {
+    model.parts().iter().enumerate().filter(|(_, part)| part.traits.loaded)
+}
+
+/// The number of whole steps that end at a time (s) or are the first to end after it: of all times in (n − 1, n] `step` it is n, as these products
+/// are rounded.
+fn whole_steps(t: f64, step: f64) -> f64 {
+    let steps = (t / step).ceil();
+    match () {
+        () if (steps - 1.0) * step >= t => steps - 1.0,
+        () if steps * step < t => steps + 1.0,
+        () => steps,
     }
 }
 

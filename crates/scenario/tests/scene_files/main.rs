@@ -25,6 +25,7 @@ mod required;
 mod resolved;
 mod resolving;
 mod resting;
+mod rises;
 mod running;
 mod settings;
 mod shapes;
