@@ -87,6 +87,7 @@ mod moreau_jean;
 mod moreau_jean_closed;
 mod moreau_jean_located;
 mod moreau_jean_projected;
+mod owed;
 mod pair_law;
 mod phases;
 mod projected_step;

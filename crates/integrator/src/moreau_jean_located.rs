@@ -11,6 +11,7 @@ mod turn;
 use crate::closed_step::{ClosedStep, THETA};
 use crate::factors::Factors;
 use crate::moreau_jean_closed::deepest;
+use crate::owed::Owed;
 use crate::theta_step::weights;
 use crate::{
     Contact, ContactStage, Keep, Model, MoreauJeanClosedSettings, Part, STEP_ROUNDING, Scheme, SettingError, State,
@@ -206,6 +207,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         }
         let contacts = model.contacts_to_expect();
         self.step.start(model, state, work)?;
+        self.step.step.owed.restore(model, state);
         self.impact.reserve(model);
         self.one.reserve(model);
         self.hits.reserve(contacts);
@@ -222,7 +224,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.stays.reserve(contacts);
         // Few bodies fly that have stood still before.
         let flights = model.body_count().min(crate::stage::RESERVED_CONTACTS);
-        let numbers = 3 * contacts + Flights::NUMBERS * flights;
+        let numbers = 3 * contacts + Flights::NUMBERS * flights + Owed::most_numbers(model);
         self.lately.reserve(numbers);
         self.flights.reserve(flights, model.body_count());
         self.rises.start(model);
@@ -269,6 +271,9 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.lately.clear();
         self.flights.clear();
         for held in state.memory.all_numbers().chunks_exact(3) {
+            if held[0] == Owed::MARK {
+                continue;
+            }
             match held[0] < 0.0 {
                 true => self.flights.push(held),
                 false => self.lately.extend_from_slice(held),
@@ -279,6 +284,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         let (penetration, stays) = (penetration?, &self.stays);
         let report = work.finish(model, state, Some(penetration), |i, _| stays[i])?;
         self.lately.extend(self.flights.numbers());
+        self.lately.extend(self.step.step.owed.numbers(state.dt));
         state.memory.set_numbers(&self.lately);
         state.tally.unlocated_steps += u64::from(self.unlocated);
         Ok(report)
@@ -344,8 +350,10 @@ impl<const D: usize> MoreauJeanLocated<D> {
     ) -> Result<f64, StepError> {
         let (mut left, mut impacts, mut jumps, mut struck) = (span.h, 0, 0, true);
         self.unlocated = false;
+        self.step.step.owed.begin(model);
         loop {
             let rest = StepSpan { start: from.t, end: span.end, h: left };
+            self.step.step.owed.go_on(rest);
             self.step.begin(model, from, &rest, work)?;
             self.step.of_step = left / span.h;
             if impacts == 0 {
@@ -498,8 +506,10 @@ impl<const D: usize> MoreauJeanLocated<D> {
             }
         }
         self.step.end_phase(model, from, part, outcome, work)?;
-        from.q.copy_from_slice(&self.step.step.q_at);
-        from.v.copy_from_slice(&self.step.step.v_end);
+        let motion = &mut self.step.step;
+        motion.owed.take_part(model, from, part.h, &motion.v_end);
+        from.q.copy_from_slice(&motion.q_at);
+        from.v.copy_from_slice(&motion.v_end);
         from.t = part.end;
         Ok(())
     }

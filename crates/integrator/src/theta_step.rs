@@ -2,6 +2,7 @@
 //! forces.
 
 use crate::mismatch::Identity;
+use crate::owed::Owed;
 use crate::stretching::{Taken, Tensions};
 use crate::subsystem::{all_finite, dot};
 use crate::{
@@ -33,6 +34,8 @@ pub(crate) struct ThetaStep {
     tensions: Tensions,
     /// The cutoff with which subsystems that have a motion in closed form take it; `None`: none does.
     pub(crate) cutoff: Option<f64>,
+    /// For a scheme that divides its steps.
+    pub(crate) owed: Owed,
     /// The model that the scheme was started with.
     model: Option<Identity>,
 }
@@ -214,6 +217,7 @@ impl ThetaStep {
             // short one would jump from it, and push with what the jump takes.
             let dt = state.dt;
             part.system.drive_mean([span.end - theta * dt, span.end + (1.0 - theta) * dt], v_end);
+            self.owed.catch_up(part, dt, h, v_end);
             let (jump, pull) = (scratch, &mut self.product[v]);
             for ((jump, v1), v0) in jump.iter_mut().zip(v_end.iter()).zip(v_start) {
                 *jump = v1 - v0;

@@ -72,6 +72,27 @@ fn prescribed_velocities_go_on_as_means_about_the_time() {
     assert!(matches!(short.drive_about(&model, 0.5), Err(StateError::Length { found: 5, expected: 6, .. })));
 }
 
+/// Where a step is divided, prescribed velocities at its end are more than these means; so they are in a run that goes on from there.
+#[test]
+fn what_divided_steps_owe_is_not_forgotten() {
+    let shake = Motion::still().with(Given::Acceleration, 8.0, Arc::new(Formula::harmonic(0.0, 11.0, 0.3).unwrap()));
+    let ground = Ground::moving(0.0, [shake, Motion::still(), Motion::still()]);
+    let model = model(&FLAT_BLOCK, gravity(), PairLaw::new(0.2, 0.0), Kinematics::Deformed, Box::new(ground));
+    let located = schemes().iter().find(|scheme| scheme.name == MoreauJeanLocated::<2>::NAME).unwrap();
+    let mut whole = State::new(&model, &[0.0, 0.025, 0.0, 0.0, 0.0, 0.0], &[0.0; 6], 1e-3).unwrap();
+    let mut owing = 0;
+    for _ in 0..150 {
+        steps(&model, located, &mut whole, 1);
+        let mut part = taken_over(&model, located, &whole);
+        owing += u32::from(part.v != whole.v);
+        let mut whole = whole.clone();
+        steps(&model, located, &mut whole, 3);
+        steps(&model, located, &mut part, 3);
+        assert_eq!((&part.q, &part.v), (&whole.q, &whole.v), "from {} s on", whole.t);
+    }
+    assert!(owing > 0, "no slide stops within a step");
+}
+
 /// Forces are no impulses, and a phase doesn't take them for such.
 #[test]
 fn a_stage_that_holds_forces_is_not_handed_in() {

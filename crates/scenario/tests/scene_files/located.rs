@@ -223,7 +223,7 @@ impl Observer<2> for Turned {
 /// Supports that move feel nothing of how a step is divided by blocks that bounce elsewhere.
 #[test]
 fn what_is_driven_moves_on_through_divided_steps() {
-    let beam = "[time]\nend = '0.2 s'\nstep = '1 ms'\n[signal.s]\nshape = 'harmonic'\nfrequency = '40 Hz'\n[material.m]\n\
+    let beam = "[time]\nend = '0.201 s'\nstep = '1 ms'\n[signal.s]\nshape = 'harmonic'\nfrequency = '40 Hz'\n[material.m]\n\
         density = '2700 kg/m^3'\nyoungs_modulus = '69 GPa'\n[ground]\n\
         [block.b]\nmaterial = 'm'\nwidth = '3 cm'\nheight = '3 cm'\ndepth = '3 cm'\nposition = ['5 m', '4 cm']\n\
         [contact.c]\nbetween = ['b', 'ground']\nfriction = 0.3\nrestitution = 0.9\n\

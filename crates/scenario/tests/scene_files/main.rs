@@ -5,6 +5,7 @@
 mod beams;
 mod crowds;
 mod discs;
+mod divided;
 mod driven;
 mod event_driven;
 mod feet;
