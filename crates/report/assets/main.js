@@ -15,7 +15,7 @@
       });
       plots.add({
         id: panel.id, contact: panel.contact, title: panel.title, unit: panel.unit, series, guides: panel.guides, least: panel.least,
-        cut: panel.cut ? cutOf(series, panel.least) : undefined, height: late ? 160 : 170,
+        cut: panel.cut, height: late ? 160 : 170,
       });
       if (panel.note) htmlElement("p", "note", `${panel.note[0].toUpperCase()}${panel.note.slice(1)}.`, byId(`panel-${panel.id}`));
     }
@@ -55,16 +55,6 @@
   const overTheRaw = (lines, means) =>
     [...lines.filter(({ raw }) => raw), ...[...lines.filter(({ raw }) => !raw), ...means].sort((a, b) => a.index - b.index)];
 
-  /** Where peaks would dwarf all else, or what rings its mean: the size to cut them at. */
-  function cutOf(series, least) {
-    const most = (lines) => lines.reduce((size, { y }) => y.reduce((a, b) => Math.max(a, Math.abs(b ?? 0) || 0), size), 0);
-    const [all, means] = [most(series), most(series.filter(({ raw }) => !raw))];
-    if (series.some(({ raw }) => raw) && means > 0 && all > 3 * means) return { limit: 1.5 * means, largest: all };
-    const sizes = series.flatMap(({ y }) => y.map(Math.abs).filter((f) => f > least)).sort((a, b) => a - b);
-    const [usual, largest] = [sizes[Math.floor(0.9 * sizes.length)], sizes[sizes.length - 1]];
-    return largest > 6 * usual ? { limit: 3 * usual, largest } : undefined;
-  }
-
   const strongest = Math.max(1e-300, ...forces.points.map(({ normal }) => normal.reduce((most, f) => Math.max(most, f), 0)));
   /** The tangential force of several points together. */
   const sumOf = (points) => points.reduce((total, { tangential }) => tangential.map((f, i) => (f === null ? null : f + (total[i] ?? 0))), []);
@@ -92,7 +82,6 @@
     if (!points.length) return;
     const suffix = scenery.contacts.length > 1 ? `, ${forces.names[k]}` : "";
     const strikes = points.filter(({ impacts }) => impacts);
-    const springs = forces.springs?.includes(k);
     // Colours are for those that touch: of all there would be too many.
     const series = (key, factor, of = points) => of.map((point) =>
       ({ label: contact.points[point.point].label, index: points.indexOf(point), t: forces.borders, y: scaled(point[key], factor), stepped: true }));
@@ -106,7 +95,7 @@
       for (const line of lines) line.raw = means.some(({ index }) => index === line.index);
       const least = 1e-6 * strongest * factor;
       plots.add({
-        id: `${key}-${k}`, contact: k, title: title + suffix, unit: `${prefix}N`, series: overTheRaw(lines, means), cut: springs ? undefined : cutOf(lines, least), floor: 0, least, height: 150,
+        id: `${key}-${k}`, contact: k, title: title + suffix, unit: `${prefix}N`, series: overTheRaw(lines, means), cut: forces.cuts[k][i] ?? undefined, floor: 0, least, height: 150,
       });
       const over = `means over ${forces.bucket}${strikes.length ? " without the impacts" : ""}`;
       htmlElement("p", "note", means.length ? `Pale: ${over}. Strong: without vibrations of periods below ${forces.period}.` : `M${over.slice(1)}.`, byId(`panel-${key}-${k}`));

@@ -19,6 +19,8 @@ pub(crate) enum Of {
     Force,
     /// An impact, in a step of this length, s: it isn't the longer for a longer step, and no force.
     Impact { lasting: f64 },
+    /// That of a contact that closes again after a moment without pressing, which is no impact, but an impulse all the same.
+    Reclosure { lasting: f64 },
 }
 
 /// What a contact did in a bucket.
@@ -58,6 +60,10 @@ impl Work {
             Of::Impact { lasting } => {
                 self.struck_for += lasting;
                 self.hardest = self.hardest.max(impulse[0]);
+                &mut self.struck
+            }
+            Of::Reclosure { lasting } => {
+                self.struck_for += lasting;
                 &mut self.struck
             }
         };

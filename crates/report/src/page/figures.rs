@@ -6,9 +6,9 @@ use super::content::largest;
 use super::crowd::CrowdCurve;
 use super::curves::{Does, ForceCurve};
 use super::drawings;
-use super::panels::{Panels, Place, Portrait, PortraitLine, TimePanel, cut_at, prefix, time_unit};
+use super::panels::{LEAST_FORCE, Panels, Place, Portrait, PortraitLine, TimePanel, prefix, time_unit};
 use super::recorder::{MANY_IMPACTS, PageRecorder};
-use super::{means, opening, span};
+use super::{opening, span};
 use crate::{shortest, with_digits};
 use teeter_plot::{Axis, Band, Colour, Figure, Legend, Panel, Series};
 
@@ -259,18 +259,18 @@ impl Plots<'_> {
     fn contact_forces(&self) -> Vec<(String, Figure)> {
         let scenery = &self.recorder.scenery;
         let borders = self.panels.curves.borders();
-        let period = self.panels.period_of_contacts(self.recorder);
+        let (period, means_of_points) = self.panels.means_of_contacts(self.recorder);
         let curves = &self.panels.forces;
-        let strongest = curves.iter().flatten().flat_map(|forces| &forces.normal).fold(0.0, |most: f64, f| f.max(most));
+        let strongest = self.panels.strongest();
         let mut pairs = Vec::new();
         for (pair, contact) in scenery.contacts.iter().enumerate() {
             let (mut normal, mut means, mut tangential, mut bands) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
             let (mut impacts, mut briefly, mut alternates) = (Vec::new(), false, false);
             let sums = self.panels.sums_tangential(pair);
             // Colours are for those that touch: of all there would be too many.
-            let touching = contact.points.iter().zip(&curves[contact.first..]);
-            let touching = touching.filter_map(|(drawn, forces)| Some((drawn, forces.as_ref()?)));
-            for (point, (drawn, forces)) in touching.enumerate() {
+            let touching = contact.points.iter().zip(curves.iter().zip(&means_of_points).skip(contact.first));
+            let touching = touching.filter_map(|(drawn, (forces, mean))| Some((drawn, forces.as_ref()?, mean)));
+            for (point, (drawn, forces, mean)) in touching.enumerate() {
                 let label = &drawn.label;
                 let [factor, sideways] = self.panels.force_units[pair].map(|(_, factor)| factor);
                 let step = |y: &[f64], factor: f64, label: &str| {
@@ -278,19 +278,15 @@ impl Plots<'_> {
                     Series::staircase(label, borders.iter().copied().zip(y.iter().map(|y| factor * y)), end)
                         .number(point)
                 };
-                // Springs make a force smooth, and without a beam nothing rings.
-                let mean = means::normal(&self.panels.curves, forces, period)
-                    .filter(|_| contact.rings && !contact.has_duration);
                 // The raw values stay behind their mean, which then has the name.
                 normal.push(if mean.is_some() {
                     step(&forces.normal, factor, "").faint()
                 } else {
                     step(&forces.normal, factor, label)
                 });
-                let scaled = |mean: Vec<f64>| {
-                    borders.iter().copied().zip(mean.into_iter().map(|y| factor * y)).collect::<Vec<_>>()
-                };
-                means.push(mean.map(|mean| Series::line(label, scaled(mean)).number(point)));
+                let scaled =
+                    |mean: &[f64]| borders.iter().copied().zip(mean.iter().map(|y| factor * y)).collect::<Vec<_>>();
+                means.push(mean.as_deref().map(|mean| Series::line(label, scaled(mean)).number(point)));
                 match (sums, point) {
                     (false, _) => tangential.push(step(&forces.tangential, sideways, label)),
                     (true, 0) => tangential.push(step(&self.panels.tangential_sum(contact), sideways, "")),
@@ -310,15 +306,16 @@ impl Plots<'_> {
             let name = (scenery.contacts.len() > 1).then(|| self.recorder.pair_name(contact));
             let weight = values(&normal).fold(0.0, f64::max) / self.panels.force_units[pair][0].1;
             let units = self.panels.force_units[pair];
-            for ((what, mut lines), (prefix, factor)) in
-                [("Normal", normal), ("Tangential", tangential)].into_iter().zip(units)
+            let cuts = self.panels.cuts_of_contact(self.recorder, pair, &means_of_points);
+            for ((what, mut lines), ((prefix, factor), cut)) in
+                [("Normal", normal), ("Tangential", tangential)].into_iter().zip(units.into_iter().zip(cuts))
             {
-                let (unit, least) = (format!("{prefix}N"), 1e-6 * strongest * factor);
+                let (unit, least) = (format!("{prefix}N"), LEAST_FORCE * strongest * factor);
                 let drawn = if what == "Normal" { &self.panels.normal } else { &self.panels.tangential };
                 if !drawn[pair] {
                     continue;
                 }
-                let (range, cut) = if contact.has_duration { (None, None) } else { cut(&lines, least, &unit) };
+                let (range, cut) = cut_to(cut.map(|(limit, most)| (factor * limit, factor * most)), &lines, &unit);
                 let over = with_digits(self.panels.curves.longest_bucket(), "s", 2);
                 let meant = if what == "Normal" && means.iter().any(Option::is_some) {
                     let period = with_digits(period, "s", 3);
@@ -330,7 +327,12 @@ impl Plots<'_> {
                 let turns = (alternates && what == "Tangential").then(|| "sticks and slips by turns".to_owned());
                 let note =
                     [name.clone(), Some(meant), turns, cut, many].into_iter().flatten().collect::<Vec<_>>().join("; ");
-                let y = cut_axis(&format!("{what} force ({unit})"), range, &lines, least);
+                let label = format!("{what} force ({unit})");
+                // From 0, as on the page: what varies by rounding only is then seen as constant.
+                let y = match range {
+                    Some((low, high)) => Axis::between(label, low, high),
+                    None => Axis::around(label, values(&lines).chain([0.0]), least),
+                };
                 if what == "Normal" {
                     lines = over_the_raw(lines, std::mem::take(&mut means));
                 }
@@ -427,12 +429,6 @@ fn stretches(borders: &[f64], forces: &ForceCurve) -> Vec<(f64, f64, Colour)> {
         }
     }
     stretches
-}
-
-/// The range that shows the forces between peaks, where those would dwarf them.
-fn cut(lines: &[Series], least: f64, unit: &str) -> (Option<(f64, f64)>, Option<String>) {
-    let sizes = values(lines).map(f64::abs).filter(|y| *y > least && y.is_finite()).collect();
-    cut_to(cut_at(sizes), lines, unit)
 }
 
 /// The range of an axis that ends at a limit, with the largest of what it cuts, and a note on that.

@@ -197,14 +197,12 @@ fn warnings(summary: &Summary) -> String {
 /// What isn't drawn, and why; empty if all is.
 fn not_drawn(panels: &Panels) -> String {
     let mut text = content::told(&panels.left_out);
-    if panels.of_forces > 0 {
+    if !panels.untraced.is_empty() {
         let space = if text.is_empty() { "" } else { " " };
-        let (impulses, are, they_are) =
-            if panels.of_forces == 1 { ("impulse", "is", "it is") } else { ("impulses", "are", "they are") };
         let _ = write!(
             text,
-            "{space}{} {impulses} at the times of impacts {are} not drawn as such: {they_are} no larger than what the force right before or after gives in two steps.",
-            panels.of_forces
+            "{space}No phase portrait of {}: the velocity turns more often than a curve of 4000 points can show.",
+            panels.untraced.join(", ")
         );
     }
     if text.is_empty() { text } else { format!("<p id=\"not-drawn\" class=\"note\">{}</p>", unbroken(&escaped(&text))) }

@@ -18,7 +18,8 @@ mod units;
 pub(crate) use forces::unseen_slip;
 pub(crate) use sections::after_impacts;
 use units::contact_sizes;
-pub(crate) use units::{Measure, Unit, Units, cut_at, length_unit, prefix, time_unit};
+use units::cut_at;
+pub(crate) use units::{LEAST_FORCE, Measure, Unit, Units, length_unit, prefix, time_unit};
 
 /// Where on the page a panel stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -137,8 +138,8 @@ pub(crate) struct Panels {
     pub(crate) panels: Vec<TimePanel>,
     pub(crate) portraits: Vec<Portrait>,
     pub(crate) left_out: Vec<LeftOut>,
-    /// How many impulses in stretches with an impact aren't drawn, as the force beside them gives as much in a step.
-    pub(crate) of_forces: usize,
+    /// Blocks whose velocity turns too often for a phase portrait.
+    pub(crate) untraced: Vec<String>,
     /// The units that quantities have on this page.
     pub(crate) units: Units,
     /// The prefixes of the units of normal and of tangential forces, with their factors, by contacts.
@@ -170,7 +171,7 @@ impl Panels {
                 panels: Vec::new(),
                 portraits: Vec::new(),
                 left_out: Vec::new(),
-                of_forces: 0,
+                untraced: Vec::new(),
             };
             panels.fill(recorder);
             panels
@@ -223,11 +224,57 @@ impl Panels {
     }
 
     /// The border between fast and slow vibrations of the normal forces that are drawn without the fast ones, s.
-    pub(crate) fn period_of_contacts(&self, recorder: &PageRecorder) -> f64 {
+    fn period_of_contacts(&self, recorder: &PageRecorder) -> f64 {
         let ringing = recorder.scenery.contacts.iter().filter(|contact| contact.rings && !contact.has_duration);
         let points = ringing.flat_map(|contact| &self.forces[contact.first..contact.first + contact.points.len()]);
         let normal: Vec<Vec<f64>> = points.flatten().map(|forces| forces.normal.clone()).collect();
         means::period(&self.curves, &normal)
+    }
+
+    /// The normal forces of contact points without their fast vibrations, N, at the borders of the buckets; none where they hardly differ. With the
+    /// period of the fast ones, s.
+    pub(crate) fn means_of_contacts(&self, recorder: &PageRecorder) -> (f64, Vec<Option<Vec<f64>>>) {
+        let period = self.period_of_contacts(recorder);
+        let mut means = vec![None; self.forces.len()];
+        // Springs make a force smooth, and without a beam nothing rings.
+        for contact in recorder.scenery.contacts.iter().filter(|contact| contact.rings && !contact.has_duration) {
+            for point in contact.first..contact.first + contact.points.len() {
+                means[point] =
+                    self.forces[point].as_ref().and_then(|forces| means::normal(&self.curves, forces, period));
+            }
+        }
+        (period, means)
+    }
+
+    /// Where the axes of a contact's normal and tangential forces end because peaks dwarf the rest, and the largest ones, N.
+    pub(crate) fn cuts_of_contact(
+        &self,
+        recorder: &PageRecorder,
+        pair: usize,
+        means: &[Option<Vec<f64>>],
+    ) -> [Option<(f64, f64)>; 2] {
+        let contact = &recorder.scenery.contacts[pair];
+        if contact.has_duration {
+            return [None; 2];
+        }
+        let points = contact.first..contact.first + contact.points.len();
+        let least = LEAST_FORCE * self.strongest();
+        let own = self.forces[points.clone()].iter().zip(&means[points]);
+        let own = own.filter_map(|(forces, mean)| Some((forces.as_ref()?, mean)));
+        let raw = own.clone().map(|(forces, mean)| (mean.is_some(), forces.normal.as_slice()));
+        let normal = raw.chain(own.clone().filter_map(|(_, mean)| Some((false, mean.as_deref()?))));
+        let sum = self.tangential_sum(contact);
+        let tangential = if self.sums_tangential(pair) {
+            cut_at(std::iter::once((false, sum.as_slice())), least)
+        } else {
+            cut_at(own.map(|(forces, _)| (false, forces.tangential.as_slice())), least)
+        };
+        [cut_at(normal, least), tangential]
+    }
+
+    /// The largest normal force of all contacts, N.
+    pub(crate) fn strongest(&self) -> f64 {
+        self.forces.iter().flatten().flat_map(|forces| &forces.normal).fold(0.0, |most: f64, f| f.max(most))
     }
 
     /// The tangential force of a contact over all its points, N, by buckets.

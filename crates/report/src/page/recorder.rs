@@ -342,13 +342,19 @@ impl PageRecorder {
             let is_instant = |other: &Active<'_, 2>| other.kind == PhaseKind::Impact && other.end == part.end;
             let strikers = if step.active().any(|other| is_instant(&other)) { &[] } else { closed };
             self.find_struck(part.contacts, part.end, strikers);
+            let is_impact = closed.iter().any(|of| of.closing == Closing::Impact && of.t == part.end);
             for contact in part.contacts {
                 let Some((pair, point)) = place(&self.layout, contact) else { continue };
                 let Some(drawn) = self.scenery.contacts.get(pair) else { continue };
                 let strikes =
                     part.kind == PhaseKind::Impact || self.free_blocks(contact).any(|block| self.struck[block]);
+                let lasting = part.duration;
                 // Springs give the force of an impact its course.
-                let of = if strikes && !drawn.has_duration { Of::Impact { lasting: part.duration } } else { Of::Force };
+                let of = match strikes && !drawn.has_duration {
+                    true if is_impact => Of::Impact { lasting },
+                    true => Of::Reclosure { lasting },
+                    false => Of::Force,
+                };
                 let slip = slip(contact, part.duration, part.balance);
                 let (point, state) = (drawn.first + point, contact.state());
                 self.kept.curves.add(point, [contact.p[0], contact.p[1]], of, ContactState::Open, slip);

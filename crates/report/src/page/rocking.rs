@@ -1,6 +1,7 @@
 //! The numbers of rocking: what each passage through the upright position leaves of a block's swing.
 
 use super::PageRecorder;
+use super::recorder::ImpactMark;
 use crate::Summary;
 use crate::summary::PeakRow;
 use crate::verdict::Fate;
@@ -13,7 +14,8 @@ pub struct HalfCycle {
     /// When φ is 0, s.
     pub t: f64,
     /// ω, relative to what carries the block, right before and right after the impact of the corner that comes
-    /// down, rad/s; none where no impact is near the passage, or there were too many impacts to keep them all.
+    /// down, rad/s; none where no impact is near the passage, where others of the block follow within three steps, as in a column whose joints
+    /// close one after the other, or where there were too many impacts to keep them all.
     ///
     /// The two are those at the ends of the step of that impact, wherever the crossing is: a step of gravity is all that
     /// is between them but for the impact. A beam that gives way spreads the block's loss over the half cycle, so the
@@ -54,6 +56,9 @@ const TELLING: f64 = 1e-2;
 
 /// An impact belongs to a passage if it is no further from it than this part of the swing from the peak to the passage.
 const NEAR: f64 = 0.25;
+
+/// Where another contact of the block strikes within so many steps after the corner that comes down, the impact goes on.
+const CASCADE: f64 = 3.0;
 
 /// Corners that a block stands on while it rocks, to the left (φ > 0) and to the right.
 const LEFT: usize = 0;
@@ -97,7 +102,7 @@ pub(crate) fn half_cycles_and_left_out(
         });
         let stands = |t: f64| (stands.0..=stands.1).contains(&t);
         let stands_alone = recorder.scenery.stands_alone(number);
-        let own = cycles.len();
+        let (own, mut hits) = (cycles.len(), 0);
         let mut peaks = summary.peaks.iter().filter(|peak| peak.body == block.name).peekable();
         for crossing in summary.crossings.iter().filter(|crossing| crossing.body == block.name) {
             let before = peaks.next();
@@ -108,15 +113,23 @@ pub(crate) fn half_cycles_and_left_out(
             if size(before.as_ref()).max(size(peaks.peek())) < LEAST * alpha {
                 continue;
             }
-            let omega = before.and_then(|peak| {
+            let nearest = before.and_then(|peak| {
                 let landing = if peak.phi > 0.0 { RIGHT } else { LEFT };
                 let distance = |t: f64| (t - crossing.t).abs();
                 let impacts = recorder.kept.impacts.iter().filter(|i| i.block == number && i.point == landing);
                 let nearest = impacts.min_by(|a, b| distance(a.t).total_cmp(&distance(b.t)))?;
-                (distance(nearest.t) <= NEAR * (crossing.t - peak.t)).then_some(nearest.omega)
+                (distance(nearest.t) <= NEAR * (crossing.t - peak.t)).then_some(nearest)
             });
+            // Within a cascade of impacts the velocity at the end of a step is none that is left of the swing.
+            let goes_on = |impact: &ImpactMark| {
+                let pair = |other: &ImpactMark| &recorder.scenery.contacts[other.contact];
+                let own = |other: &&ImpactMark| pair(other).block == number || pair(other).other == Some(number);
+                let elsewhere = recorder.kept.impacts.iter().filter(own).filter(|of| of.contact != impact.contact);
+                elsewhere.map(|other| other.t - impact.t).any(|after| (0.0..=CASCADE * summary.dt).contains(&after))
+            };
             // It bounced back, and passed the upright without an impact of its own.
-            let omega = omega.filter(|omega| omega[0] * omega[1] >= 0.0);
+            let hit = nearest.filter(|impact| impact.omega[0] * impact.omega[1] >= 0.0);
+            let omega = hit.filter(|impact| !goes_on(impact)).map(|impact| impact.omega);
             // The last one may have turned without a crossing after it.
             let unfinished = || {
                 let rocks = verdict.filter(|of| of.what == Fate::Rocks && of.t.is_some_and(|t| t > crossing.t))?;
@@ -126,9 +139,10 @@ pub(crate) fn half_cycles_and_left_out(
                 Some(peak) => Some(peak.phi).filter(|_| stands(peak.t)),
                 None => unfinished(),
             };
-            if omega.is_none() && !is_swing(before.map(|peak| peak.phi), peak_after, alpha) {
+            if hit.is_none() && !is_swing(before.map(|peak| peak.phi), peak_after, alpha) {
                 continue;
             }
+            hits += usize::from(hit.is_some());
             cycles.push(HalfCycle {
                 body: block.name.clone(),
                 t: crossing.t,
@@ -141,7 +155,6 @@ pub(crate) fn half_cycles_and_left_out(
             });
         }
         // On rigid contacts one corner stands as the other comes down, unless it bounces or tumbles, which is no rocking.
-        let hits = cycles[own..].iter().filter(|cycle| cycle.omega.is_some()).count();
         let all_kept = recorder.kept.impact_count as usize <= recorder.kept.impacts.len();
         let count = cycles.len() - own;
         if 2 * hits < count && all_kept && recorder.scenery.touches_rigidly(number) {

@@ -68,6 +68,24 @@ fn a_block_that_bounces_has_impacts_down_to_bounces_that_count_as_none() {
     assert!(counts.iter().all(|count| count.abs_diff(counts[2]) <= 2 && *count >= 10), "{counts:?}");
 }
 
+/// Shaken so that it only just lifts, a block opens and closes all the time without an impact.
+#[test]
+fn where_nothing_strikes_there_are_no_impulses_of_impacts() {
+    let text = r#"
+time = { end = "2 s", step = "200 us" }
+ground.motion = { acceleration = ["2.5 m/s^2", "0 m/s^2"], signal = "shake" }
+signal.shake = { shape = "harmonic", frequency = "2.5 Hz" }
+material.marble.density = "2700 kg/m^3"
+block.slab = { material = "marble", width = "25 cm", height = "1 m", depth = "20 cm", on = "ground", at = "0 m" }
+contact.base = { between = ["slab", "ground"], friction = 0.6 }
+"#;
+    let run = crate::page::run("just-lifts", text);
+    assert!(run.summary.impact_count == 0 && run.summary.reclosure_count > 0, "{}", run.summary.reclosure_count);
+    let data = crate::page::data(&run.html);
+    let points = data["forces"]["points"].as_array().unwrap();
+    assert!(points.len() == 2 && points.iter().all(|point| point["impacts"].is_null()), "{points:?}");
+}
+
 const BLOCK: &str = r#"
 time = { end = "1 s", step = "100 us" }
 material.aluminium.density = "2700 kg/m^3"

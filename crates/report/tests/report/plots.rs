@@ -314,3 +314,46 @@ fn a_large_force_at_another_time_hides_no_impact() {
         }
     }
 }
+
+/// A crest of the bending deck touches the block for an instant: what it bears then is no measure for the feet.
+#[test]
+fn a_point_that_touches_for_an_instant_cuts_no_forces_of_the_others() {
+    let text = r#"
+time = { end = "0.6 s", step = "200 us" }
+signal.s = { shape = "ricker", frequency = "3 Hz", peak = "0.5 s" }
+[material.al]
+density = "2700 kg/m^3"
+youngs_modulus = "69 GPa"
+[beam.deck]
+material = "al"
+span = "1.2 m"
+width = "5 cm"
+thickness = "6 mm"
+elements = 30
+supports = ["pinned", "pinned"]
+start = "static"
+damping_ratio = { mode = 1, ratio = 0.02 }
+motion = { acceleration = ["0 m/s^2", "6 m/s^2"], signal = "s" }
+[beam.deck.support.mid]
+at = "0.6 m"
+kind = "pinned"
+[block.a]
+material = "al"
+width = "5 cm"
+height = "15 cm"
+depth = "5 cm"
+on = "deck"
+at = "0.3 m"
+tilt = "3 deg"
+[contact.c]
+between = ["a", "deck"]
+friction = 0.5
+"#;
+    let page = data(&run("crest-touches", text).html);
+    let points = page["forces"]["points"].as_array().unwrap();
+    assert!(points.iter().any(|point| point["mean"].is_null()) && points.iter().any(|point| !point["mean"].is_null()));
+    let means = points.iter().filter(|point| !point["mean"].is_null()).map(|point| numbers(&point["mean"]));
+    let strongest = means.flatten().fold(0.0, f64::max);
+    let limit = page["forces"]["cuts"][0][0]["limit"].as_f64();
+    assert!(strongest > 10.0 && limit.is_none_or(|limit| limit >= 1.4 * strongest), "{limit:?} N of {strongest} N");
+}

@@ -20,14 +20,28 @@ pub(super) struct PanelData {
     least: f64,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     guides: Vec<f64>,
-    /// Whether the peaks of impacts are cut.
-    cut: bool,
+    /// Where the axis ends if peaks are cut.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cut: Option<Cut>,
     /// The contact whose it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     contact: Option<usize>,
     /// Whether it stands after the contacts.
     late: bool,
     series: Vec<SeriesData>,
+}
+
+/// Where an axis ends, and the largest of what it cuts.
+#[derive(Serialize)]
+struct Cut {
+    limit: f64,
+    largest: f64,
+}
+
+impl Cut {
+    fn of((limit, largest): (f64, f64), factor: f64) -> Self {
+        Self { limit: digits(factor * limit), largest: digits(factor * largest) }
+    }
 }
 
 #[derive(Serialize)]
@@ -158,9 +172,8 @@ pub(super) struct ForceData {
     bucket: String,
     /// The unit of `impacts`: the prefix, and by what N s are multiplied.
     impulse_unit: (&'static str, f64),
-    /// Contacts with springs, the peaks of whose forces are not cut.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    springs: Vec<usize>,
+    /// Where the axes of normal and tangential forces end if peaks are cut, by contacts, in their units.
+    cuts: Vec<[Option<Cut>; 2]>,
     /// Contacts that only strike, without forces between impacts.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     forceless: Vec<usize>,
@@ -209,7 +222,7 @@ pub(super) fn time_panels(recorder: &PageRecorder, panels: &Panels) -> Vec<Panel
         unit: panel.unit.clone(),
         least: digits(panel.least),
         guides: panel.guides.iter().copied().map(digits).collect(),
-        cut: panel.cut,
+        cut: panel.cut_at().map(|cut| Cut::of(cut, 1.0)),
         late: panel.place == Place::Forces,
         series: {
             let steps = if panel.cut { SEEN_BELOW_PEAKS } else { SEEN };
@@ -243,7 +256,12 @@ pub(super) fn portraits(panels: &Panels) -> Vec<PortraitData> {
 }
 
 pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
-    let period = panels.period_of_contacts(recorder);
+    let (period, means) = panels.means_of_contacts(recorder);
+    let cuts = |pair: usize| {
+        let cuts = panels.cuts_of_contact(recorder, pair, &means).into_iter().zip(panels.force_units[pair]);
+        let mut cuts = cuts.map(|(cut, (_, factor))| cut.map(|cut| Cut::of(cut, factor)));
+        std::array::from_fn(|_| cuts.next().flatten())
+    };
     let contacts = recorder.scenery.contacts.iter().enumerate();
     let all = contacts.flat_map(|(contact, drawn)| (0..drawn.points.len()).map(move |point| (contact, drawn, point)));
     let points = all.filter_map(|(contact, drawn, point)| {
@@ -258,9 +276,7 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
             contact,
             point,
             normal: Column::of(&forces.normal, SEEN_BELOW_PEAKS),
-            mean: crate::page::means::normal(&panels.curves, forces, period)
-                .filter(|_| drawn.rings && !drawn.has_duration)
-                .map(|means| Column::of(&means, SEEN)),
+            mean: means[drawn.first + point].as_ref().map(|means| Column::of(means, SEEN)),
             tangential: Column::of(&forces.tangential, SEEN_BELOW_PEAKS),
             impacts: (!forces.impacts.is_empty()).then(|| Column::of(&forces.impacts, SEEN)),
             state: state.collect(),
@@ -278,9 +294,7 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         period: with_digits(period, "s", 3),
         bucket: with_digits(panels.curves.longest_bucket(), "s", 2),
         impulse_unit: panels.impulse_unit,
-        springs: (0..recorder.scenery.contacts.len())
-            .filter(|pair| recorder.scenery.contacts[*pair].has_duration)
-            .collect(),
+        cuts: (0..recorder.scenery.contacts.len()).map(cuts).collect(),
         forceless: (0..panels.normal.len()).filter(|pair| !panels.normal[*pair]).collect(),
         frictionless: (0..panels.tangential.len()).filter(|pair| !panels.tangential[*pair]).collect(),
         redundant: (0..panels.redundant.len()).filter(|pair| panels.redundant[*pair].forces).collect(),

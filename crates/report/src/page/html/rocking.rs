@@ -117,7 +117,7 @@ pub(super) fn rocking(
     html.push_str("<p class=\"note\">");
     html.push_str(if hits {
         "ω⁻ and ω⁺ are the angular velocities right before and right after the step in which the corner that comes down hits; a step of \
-         gravity is in them, too; a dash stands where no corner landed near φ = 0. "
+         gravity is in them, too; a dash stands where no corner landed near φ = 0, or other contacts of the block struck within the next three steps. "
     } else {
         "Angular velocities before and after an impact are told where one corner stands as the other comes down. "
     });

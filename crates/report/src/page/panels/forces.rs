@@ -35,8 +35,7 @@ impl Panels {
             own.iter_mut().flatten().for_each(|forces| forces.stick_within(rounding));
             // What a step of the force gives anyway is no impact worth a plot.
             let lasting = OF_STEP * self.curves.step();
-            self.of_forces +=
-                own.iter_mut().flatten().map(|forces| forces.drop_impacts_of_force(lasting)).sum::<usize>();
+            own.iter_mut().flatten().for_each(|forces| forces.drop_impacts_of_force(lasting));
         }
         for (pair, contact) in scenery.contacts.iter().enumerate() {
             let points = contact.points.iter().zip(&self.forces[contact.first..]);

@@ -304,7 +304,12 @@ impl Panels {
             }
             let points =
                 |k: usize| recorder.kept.orbits[BLOCK_COORDINATES * k + c].points(PORTRAIT_POINTS / chosen.len());
-            let orbits: Vec<(usize, Vec<Point>)> = blocks().map(|k| (k, points(k))).collect();
+            let orbits: Vec<(usize, Vec<Point>)> = blocks().filter_map(|k| Some((k, points(k)?))).collect();
+            let untraced = blocks().filter(|k| orbits.iter().all(|(drawn, _)| drawn != k));
+            self.untraced.extend(untraced.map(|k| recorder.scenery.blocks[k].name.clone()));
+            if orbits.is_empty() {
+                continue;
+            }
             let (units, factors) = if c == PHI {
                 ([display.angle.symbol(), "rad"], [display.angle.per_radian(), 1.0])
             } else {

@@ -112,13 +112,7 @@ impl Units {
 impl TimePanel {
     /// Where its axis ends because peaks dwarf the rest, or what rings its mean, and the largest of them.
     pub(crate) fn cut_at(&self) -> Option<(f64, f64)> {
-        let sizes = || self.lines.iter().flat_map(|line| &line.y).map(|y| y.abs()).filter(|y| y.is_finite());
-        let all = largest(self.lines.iter().flat_map(|line| &line.y));
-        let means = largest(self.lines.iter().filter(|line| !line.is_raw).flat_map(|line| &line.y));
-        if self.lines.iter().any(|line| line.is_raw) && all > RINGS * means {
-            return Some((0.5 * RINGS * means, all));
-        }
-        cut_at(sizes().filter(|y| *y > self.least).collect()).filter(|_| self.cut)
+        cut_at(self.lines.iter().map(|line| (line.is_raw, line.y.as_slice())), self.least).filter(|_| self.cut)
     }
 
     /// How large its values are that are seen.
@@ -165,21 +159,19 @@ pub(crate) fn time_unit(duration: f64) -> Unit {
 }
 
 /// The largest of forces as they are seen: where the peaks of impacts dwarf all else and are cut, the size at which they are.
-fn seen<'a>(forces: impl Iterator<Item = &'a f64>) -> f64 {
-    let mut sizes: Vec<f64> = forces.map(|f| f.abs()).filter(|f| f.is_finite()).collect();
-    let most = largest(&sizes);
-    sizes.retain(|f| *f > LEAST_FORCE * most);
-    cut_at(sizes).map_or(most, |(limit, _)| limit)
+fn seen<'a>(curves: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
+    let most = largest(curves.clone().flatten());
+    cut_at(curves.map(|curve| (false, curve)), LEAST_FORCE * most).map_or(most, |(limit, _)| limit)
 }
 
 /// How large normal and tangential forces of each contact are, as they are seen, N.
 pub(super) fn contact_sizes(recorder: &PageRecorder, forces: &[Option<ForceCurve>]) -> Vec<[f64; 2]> {
     // Peaks of springs are forces that act, and are shown whole.
     let has_springs = recorder.scenery.contacts.iter().any(|contact| contact.has_duration);
-    let seen = |forces: &mut dyn Iterator<Item = &f64>| if has_springs { largest(forces) } else { seen(forces) };
     let of = |contact: &ContactDrawn| {
-        let own = || forces[contact.first..contact.first + contact.points.len()].iter().flatten();
-        [seen(&mut own().flat_map(|forces| &forces.normal)), seen(&mut own().flat_map(|forces| &forces.tangential))]
+        let own = forces[contact.first..contact.first + contact.points.len()].iter().flatten();
+        let parts: [fn(&ForceCurve) -> &[f64]; 2] = [|forces| &forces.normal, |forces| &forces.tangential];
+        parts.map(|part| if has_springs { largest(own.clone().flat_map(part)) } else { seen(own.clone().map(part)) })
     };
     recorder.scenery.contacts.iter().map(of).collect()
 }
@@ -191,15 +183,34 @@ const PEAK: f64 = 6.0;
 /// What rings by this many times the largest mean would make all means one line; the axis then ends at half as much.
 const RINGS: f64 = 3.0;
 
-/// Where an axis of forces of these sizes ends because peaks dwarf the rest, and the largest of them.
-pub(crate) fn cut_at(mut sizes: Vec<f64>) -> Option<(f64, f64)> {
-    sizes.sort_by(f64::total_cmp);
-    let (&usual, &largest) = (sizes.get(sizes.len() * 9 / 10)?, sizes.last()?);
-    (largest > PEAK * usual).then_some((0.5 * PEAK * usual, largest))
+/// Where the axis of these curves ends because peaks dwarf the rest, or what rings its mean, and the largest of all: the one rule for page and
+/// figures. Each curve is told with whether it stays pale behind a mean; values of no more than `least` count as none.
+///
+/// However many curves are small, none of the others is cut below what it bears on average over the run.
+pub(crate) fn cut_at<'a>(curves: impl Iterator<Item = (bool, &'a [f64])> + Clone, least: f64) -> Option<(f64, f64)> {
+    let all = largest(curves.clone().flat_map(|(_, y)| y));
+    let strong = || curves.clone().filter(|(is_raw, _)| !is_raw).map(|(_, y)| y);
+    let means = largest(strong().flatten());
+    let limit = if curves.clone().any(|(is_raw, _)| is_raw) && means > 0.0 && all > RINGS * means {
+        0.5 * RINGS * means
+    } else {
+        let mut sizes: Vec<f64> = curves.clone().flat_map(|(_, y)| y).map(|y| y.abs()).collect();
+        sizes.retain(|y| y.is_finite() && *y > least);
+        sizes.sort_by(f64::total_cmp);
+        let usual = sizes.get(sizes.len() * 9 / 10)?;
+        if all > PEAK * usual { 0.5 * PEAK * usual } else { all }
+    };
+    let limit = strong().map(borne).fold(limit, f64::max);
+    (limit < all).then_some((limit, all))
+}
+
+/// How large a curve is on average.
+fn borne(y: &[f64]) -> f64 {
+    y.iter().filter(|y| y.is_finite()).map(|y| y.abs()).sum::<f64>() / y.len().max(1) as f64
 }
 
 /// A force below this part of the largest is none.
-const LEAST_FORCE: f64 = 1e-6;
+pub(crate) const LEAST_FORCE: f64 = 1e-6;
 
 #[cfg(test)]
 mod tests {
@@ -241,11 +252,27 @@ mod tests {
 
     #[test]
     fn peaks_that_are_cut_dont_set_the_unit() {
+        let seen = |forces: &[f64]| super::seen(std::iter::once(forces));
         let mut forces = vec![14.0; 99];
         forces.push(1820.0);
-        assert_eq!((seen(forces.iter()), prefix(seen(forces.iter())).0), (42.0, ""));
-        assert_eq!(seen([14.0, 20.0, 0.0].iter()), 20.0);
-        assert_eq!(seen([].iter()), 0.0);
+        assert_eq!((seen(&forces), prefix(seen(&forces)).0), (42.0, ""));
+        assert_eq!(seen(&[14.0, 20.0, 0.0]), 20.0);
+        assert_eq!(seen(&[]), 0.0);
+    }
+
+    #[test]
+    fn small_curves_cut_no_loaded_one() {
+        let loaded: Vec<f64> = (0..100).map(|k| if k % 2 == 0 { 10.0 } else { 0.0 }).collect();
+        let [hump, chatter] = [vec![0.5; 3], vec![0.01; 100]];
+        let cut = |curves: &[(bool, &[f64])]| cut_at(curves.iter().copied(), 1e-6);
+        // A point that touched a few times, and many that hardly press.
+        assert_eq!(cut(&[(false, &loaded), (false, &hump)]), None);
+        let many: Vec<(bool, &[f64])> =
+            std::iter::once((false, &loaded[..])).chain((0..20).map(|_| (false, &chatter[..]))).collect();
+        assert_eq!(cut(&many), Some((5.0, 10.0)), "not at 0.03: the mean is 5");
+        // What rings is cut by its mean; without one that is larger than nothing, by nothing.
+        assert_eq!(cut(&[(true, &loaded), (false, &hump)]), Some((0.75, 10.0)));
+        assert_eq!(cut(&[(true, &loaded), (false, &[0.0])]), None);
     }
 
     #[test]
