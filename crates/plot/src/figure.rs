@@ -146,12 +146,25 @@ impl Figure {
         self
     }
 
+    /// How tall the figure is, mm.
+    #[must_use]
+    pub fn height_mm(&self) -> f64 {
+        self.height() / UNITS_PER_MM
+    }
+
+    /// The height in the units of the drawing.
+    fn height(&self) -> f64 {
+        let above = if self.headed { HEADING } else { 0.0 };
+        let panels = self.panels.iter().map(|panel| self.heights(panel));
+        above + panels.map(|(header, inner)| header + inner).sum::<f64>() + FOOTER
+    }
+
     /// The figure as an SVG document, which can also be embedded in an HTML page.
     #[must_use]
     pub fn to_svg(&self) -> String {
         let heights: Vec<(f64, f64)> = self.panels.iter().map(|panel| self.heights(panel)).collect();
         let above = if self.headed { HEADING } else { 0.0 };
-        let total = above + heights.iter().map(|(header, inner)| header + inner).sum::<f64>() + FOOTER;
+        let total = self.height();
         let beside = self.panels.iter().map(|panel| self.legend.beside(&panel.entries()).0).fold(0.0, f64::max);
         let width = self.width + beside;
         let mut svg = String::new();

@@ -76,6 +76,8 @@ pub(crate) enum Symbol {
     Area(usize),
     /// A dashed line across the panel.
     Guide,
+    /// A tick at the top of the panel.
+    Tick,
 }
 
 impl<'a> Entry<'a> {
@@ -113,6 +115,13 @@ impl<'a> Entry<'a> {
                 svg,
                 "<path d=\"M{x:.2} {:.2}h{sample}\" stroke=\"{}\" stroke-dasharray=\"4 3\" stroke-width=\".8\"/>",
                 y - 3.5,
+                Colour::Guide.value(theme)
+            ),
+            Symbol::Tick => write!(
+                svg,
+                "<path d=\"M{:.2} {:.2}v6\" stroke=\"{}\" stroke-width=\".8\"/>",
+                x + 0.5 * sample,
+                y - 7.0,
                 Colour::Guide.value(theme)
             ),
             Symbol::Swatch(colour) => write!(

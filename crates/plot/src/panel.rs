@@ -32,6 +32,7 @@ pub struct Panel {
     note: Option<String>,
     /// Places of ticks, and their length as a part of the longest.
     ticks_at: Vec<(f64, f64)>,
+    tick_name: Option<String>,
     guides: Vec<f64>,
     levels: Vec<f64>,
     guide_name: Option<String>,
@@ -92,6 +93,7 @@ impl Panel {
             content,
             note: None,
             ticks_at: Vec::new(),
+            tick_name: None,
             guides: Vec::new(),
             levels: Vec::new(),
             guide_name: None,
@@ -145,6 +147,19 @@ impl Panel {
         let part = |count: u32| (f64::from(count) / f64::from(most)).sqrt();
         self.ticks_at = counts.into_iter().filter(|(_, count)| *count > 0).map(|(x, count)| (x, part(count))).collect();
         self
+    }
+
+    /// Names the ticks at the top in the legend, if there are any. Default: no name.
+    #[must_use]
+    pub fn ticks_named(mut self, name: impl Into<String>) -> Self {
+        self.tick_name = Some(name.into());
+        self
+    }
+
+    /// Whether there are ticks at the top.
+    #[must_use]
+    pub fn has_ticks(&self) -> bool {
+        !self.ticks_at.is_empty()
     }
 
     /// Draws dashed vertical lines at these x.
@@ -228,7 +243,9 @@ impl Panel {
                 let blank = self.blank.iter().filter(|name| !name.is_empty());
                 let blank = blank.map(|name| Entry { symbol: Symbol::Swatch(Colour::Paper), name });
                 let guides = self.guide_name.iter().map(|name| Entry { symbol: Symbol::Guide, name });
-                named.chain(guides).chain(shaded).chain(blank).collect()
+                let ticks = self.tick_name.iter().filter(|name| self.has_ticks() && !name.is_empty());
+                let ticks = ticks.map(|name| Entry { symbol: Symbol::Tick, name });
+                named.chain(guides).chain(ticks).chain(shaded).chain(blank).collect()
             }
             Content::Bands { key, .. } => {
                 key.iter().map(|(colour, name)| Entry { symbol: Symbol::Swatch(*colour), name }).collect()
@@ -294,7 +311,7 @@ impl Panel {
         for (k, line) in series.iter().enumerate().filter(|(_, series)| series.drawn == Drawn::Line) {
             let path = line_path(line.points(), |x| frame.px(x), py);
             let stroke = stroke(line.number_at(k), line.dash, theme);
-            let weight = if line.faint { "stroke-width=\".5\" stroke-opacity=\".35\"" } else { "stroke-width=\"1.1\"" };
+            let weight = if line.faint { "stroke-width=\".5\" stroke-opacity=\".25\"" } else { "stroke-width=\"1.1\"" };
             let _ = writeln!(svg, "<path d=\"{path}\" {stroke} {weight}/>");
         }
         svg.push_str("</g>\n");
@@ -307,10 +324,11 @@ impl Panel {
                 part => format!("M{:.2} {top:.2}v{:.1}", frame.px(x), TICK * part),
             })
             .collect();
-        let ink = Colour::Ink.value(theme);
         if !ticks.is_empty() {
-            let _ = writeln!(svg, "<path d=\"{ticks}\" stroke=\"{ink}\" stroke-width=\".8\"/>");
+            let colour = Colour::Guide.value(theme);
+            let _ = writeln!(svg, "<path d=\"{ticks}\" stroke=\"{colour}\" stroke-width=\".8\"/>");
         }
+        let ink = Colour::Ink.value(theme);
         let _ = writeln!(
             svg,
             "<rect x=\"{LEFT}\" y=\"{top:.2}\" width=\"{width}\" height=\"{height}\" fill=\"none\" stroke=\"{ink}\" \
@@ -626,8 +644,12 @@ mod tests {
         let axis = || Axis::between("y", 0.0, 10.0);
         let cells = Series::cells("yes", [((0.0, 1.0), (0.0, 1.0))]);
         let named = Panel::new(axis()).with([cells]).blank_means("no").levels(vec![5.0, 50.0]).guides_named("limit");
+        let named = named.ticks_named("strikes");
+        let without = Figure::new("f", "t", Axis::between("x", 0.0, 10.0)).panel(named.clone()).to_svg();
+        assert!(!without.contains(">strikes<"));
+        let named = named.ticks_at(vec![3.0]);
         let svg = Figure::new("f", "t", Axis::between("x", 0.0, 10.0)).panel(named).to_svg();
-        for name in [">yes<", ">no<", ">limit<"] {
+        for name in [">yes<", ">no<", ">limit<", ">strikes<"] {
             assert!(svg.contains(name), "{name}: {svg}");
         }
         // In the legend and at 5, not at 50.

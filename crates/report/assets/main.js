@@ -419,16 +419,14 @@
   /** Where all moves within a small part of the run, the plots open on that. */
   function openOnMotion() {
     if (!data.moving) return;
-    const [first, last] = data.moving;
-    const room = 0.25 * (last - first);
-    const [from, to] = [Math.max(start, first - room), Math.min(end, last + room)];
+    const { moves: [first, last], shown: [from, to], on_ground: onGround } = data.moving;
     plots.zoom(from, to);
     opening = { t: times[frameAt(from)], lasts: to - from };
     chooseSpeed();
     show(frameAt(from));
     const say = (t) => `${Number((t * timeUnit[1]).toPrecision(3))} ${timeUnit[0]}`;
     const when = first - start < 1e-3 * (end - start) ? `after ${say(last)}` : `before ${say(first)} or after ${say(last)}`;
-    const note = htmlElement("p", "note", `Hardly anything moves ${when}: the plots open on what does. `);
+    const note = htmlElement("p", "note", `Hardly anything moves${onGround ? " on the ground" : ""} ${when}: the plots open on what does. `);
     note.id = "opened-on";
     const whole = htmlElement("button", "link", "Show all times", note);
     whole.type = "button";

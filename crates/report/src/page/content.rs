@@ -45,8 +45,9 @@ pub(crate) struct LeftOut {
     /// named.
     pub(crate) of: Vec<String>,
     pub(crate) together: &'static str,
-    /// How large it becomes, in this unit.
+    /// How large it becomes, in this unit, and from where on it is drawn.
     pub(crate) largest: f64,
+    pub(crate) bound: f64,
     pub(crate) unit: &'static str,
 }
 
@@ -55,8 +56,11 @@ const NAMED: usize = 3;
 
 impl LeftOut {
     fn told(&self) -> String {
-        let size =
-            if self.largest == 0.0 { "0".to_owned() } else { format!("{} {}", power_of_ten(self.largest), self.unit) };
+        let size = if self.largest == 0.0 {
+            "0".to_owned()
+        } else {
+            format!("{} {}, drawn from {} on", power_of_ten(self.largest), self.unit, power_of_ten(self.bound))
+        };
         let of = match self.of.len() {
             // The name of the quantity alone: `force`, not `force of`.
             0 => return format!("{} ({size})", self.what.trim_end_matches(" of")),
@@ -74,18 +78,16 @@ pub(crate) fn told(left_out: &[LeftOut]) -> String {
         return String::new();
     }
     let list: Vec<String> = left_out.iter().map(LeftOut::told).collect();
-    format!(
-        "Not drawn, as it stays below {} of its scale, which is rounding: {}.",
-        power_of_ten(ROUNDING),
-        list.join("; ")
-    )
+    format!("Not drawn, as it is no more than the rounding of all steps may add up to: {}.", list.join("; "))
 }
 
 /// A number with one digit as a power of ten: `3 × 10⁻¹²`.
 fn power_of_ten(x: f64) -> String {
     const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let text = format!("{x:.0e}");
-    let Some((digit, power)) = text.split_once('e') else { return text };
+    let Some((digit, power)) = text.split_once('e').filter(|(_, power)| *power != "0") else {
+        return text.trim_end_matches("e0").to_owned();
+    };
     let raised = power.chars().map(|c| c.to_digit(10).map_or('⁻', |digit| RAISED[digit as usize]));
     let times = if digit == "1" { String::new() } else { format!("{digit} × ") };
     format!("{times}10{}", raised.collect::<String>())
@@ -118,18 +120,22 @@ mod tests {
     #[test]
     fn what_is_left_out_is_told() {
         assert_eq!(told(&[]), "");
+        assert_eq!([1e-11, 3e-8, 1.0, 2.0].map(power_of_ten), ["10⁻¹¹", "3 × 10⁻⁸", "1", "2"]);
         let left_out = |what, of: usize, largest| LeftOut {
             what,
             of: (0..of).map(|k| format!("b{k}")).collect(),
             together: "blocks",
             largest,
+            bound: 1e-8,
             unit: "rad",
         };
         let text = told(&[left_out("φ of", 1, 3e-12), left_out("slip of", 0, 0.0)]);
-        assert!(text.ends_with("rounding: φ of b0 (3 × 10⁻¹² rad); slip (0)."), "{text}");
+        assert!(text.ends_with("add up to: φ of b0 (3 × 10⁻¹² rad, drawn from 10⁻⁸ on); slip (0)."), "{text}");
         let text = told(&[left_out("φ of", 2, 3e-12), left_out("x of", 15, 4e-12)]);
         assert!(
-            text.ends_with("φ of b0, b1 (at most 3 × 10⁻¹² rad); x of 15 blocks (at most 4 × 10⁻¹² rad)."),
+            text.ends_with(
+                "φ of b0, b1 (at most 3 × 10⁻¹² rad, drawn from 10⁻⁸ on); x of 15 blocks (at most 4 × 10⁻¹² rad, drawn from 10⁻⁸ on)."
+            ),
             "{text}"
         );
     }

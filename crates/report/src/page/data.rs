@@ -7,7 +7,7 @@ mod network;
 mod pictures;
 mod plots;
 
-use super::opening;
+use super::opening::{Opening, opening};
 use super::panels::Panels;
 use super::recorder::PageRecorder;
 use super::scenery::Scenery;
@@ -30,9 +30,9 @@ struct Data<'a> {
     crowd: Option<CrowdData>,
     #[serde(skip_serializing_if = "Option::is_none")]
     network: Option<NetworkData>,
-    /// When anything moves, if that is a small part of the run.
+    /// On which part of the run the plots open, if that is a small one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    moving: Option<[f64; 2]>,
+    moving: Option<Opening>,
     loads: Vec<LoadData>,
     forces: ForceData,
     impacts: Vec<ImpactData>,
@@ -67,7 +67,11 @@ pub(crate) fn json(recorder: &PageRecorder, panels: &Panels, summary: &Summary) 
             .has_network()
             .then(|| network::network(recorder))
             .filter(|network| !network.pairs.is_empty()),
-        moving: opening::moving(recorder, panels).map(|ends| ends.map(time)),
+        moving: opening(recorder, panels).map(|opening| Opening {
+            moves: opening.moves.map(time),
+            shown: opening.shown.map(time),
+            ..opening
+        }),
         loads: pictures::loads(recorder),
         forces: plots::forces(recorder, panels),
         impacts: impacts::impacts(recorder),

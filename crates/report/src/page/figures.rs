@@ -6,9 +6,10 @@ use super::content::largest;
 use super::crowd::CrowdCurve;
 use super::curves::{Does, ForceCurve};
 use super::drawings;
+use super::opening::opening;
 use super::panels::{LEAST_FORCE, Panels, Place, Portrait, PortraitLine, TimePanel, prefix, time_unit};
 use super::recorder::{MANY_IMPACTS, PageRecorder};
-use super::{opening, span};
+use super::span;
 use crate::{shortest, with_digits};
 use teeter_plot::{Axis, Band, Colour, Figure, Legend, Panel, Series};
 
@@ -23,7 +24,7 @@ use teeter_plot::{Axis, Band, Colour, Figure, Legend, Panel, Series};
 #[must_use]
 pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
     let panels = Panels::of(recorder);
-    let moving = opening::shown(recorder, &panels);
+    let moving = opening(recorder, &panels).map(|opening| opening.shown);
     let plots = Plots { recorder, panels: &panels, t: panels.curves.times(), moving };
     let scenery = &recorder.scenery;
     let width = 1e3 * scenery.display.figure_width;
@@ -119,7 +120,11 @@ impl Plots<'_> {
             if to - from < end - start { format!(", of a run to {}", with_digits(end, "s", 6)) } else { String::new() };
         let (unit, factor) = time_unit(to - from);
         let x = Axis::between(format!("Time t ({unit}){part}"), from, to).shown_in(factor);
-        panels.into_iter().fold(Figure::new(id, title, x), Figure::panel)
+        let first = panels.iter().position(Panel::has_ticks);
+        let panels = panels.into_iter().enumerate();
+        // Said once in a figure.
+        let named = panels.map(|(k, panel)| if first == Some(k) { panel.ticks_named("impact") } else { panel });
+        named.fold(Figure::new(id, title, x), Figure::panel)
     }
 
     /// A panel with the impacts marked, of one contact or of all: one by one, or how many about each time where they are many.
@@ -223,15 +228,18 @@ impl Plots<'_> {
         self.crowd_figure("omega", "Angular velocity of the bodies over time", "Angular velocity ω (rad/s)", lines)
     }
 
-    /// Of one pair or two a figure of all; of more one of each, as all together wouldn't fit a page: of [`MOST_PAIRS`]
-    /// at most, those with the largest values.
+    /// Of one pair or two a figure of all, if it fits a page; else one of each: of [`MOST_PAIRS`] at most, those with the largest values.
     fn by_pairs(&self, file: &str, title: &str, pairs: Vec<(usize, f64, Vec<Panel>)>) -> Vec<(String, Figure)> {
         if pairs.is_empty() {
             return Vec::new();
         }
         if pairs.len() <= TOGETHER {
-            let panels = pairs.into_iter().flat_map(|(_, _, panels)| panels).collect();
-            return vec![(file.to_owned(), self.over_time(file, title, panels))];
+            let panels = pairs.iter().flat_map(|(_, _, panels)| panels.clone()).collect();
+            let all = self.over_time(file, title, panels).legend(Legend::Rows);
+            let width = 1e3 * self.recorder.scenery.display.figure_width;
+            if pairs.len() == 1 || all.clone().width_mm(width).height_mm() <= TALLEST {
+                return vec![(file.to_owned(), all)];
+            }
         }
         let mut sizes: Vec<f64> = pairs.iter().map(|(_, size, _)| *size).collect();
         sizes.sort_by(|a, b| b.total_cmp(a));
@@ -375,6 +383,9 @@ fn guided(panel: Panel, angles: &[f64], axis: &Axis) -> Panel {
 
 /// What the dashed lines of plots of φ are, as on the page.
 const GUIDES: &str = "critical angle";
+
+/// Tallest figure of several pairs, mm: on A4 there is room for its caption.
+const TALLEST: f64 = 250.0;
 
 /// Pairs whose contact forces are in one figure.
 const TOGETHER: usize = 2;

@@ -2,33 +2,45 @@
 
 use super::panels::{Line, Panels, Place};
 use super::recorder::PageRecorder;
+use serde::Serialize;
 
 /// What moves for longer than this part of the run is seen in a plot of all of it.
 const SMALL: f64 = 0.2;
 
+/// Before and after what moves there is room for this part of it.
+const ROOM: f64 = 0.25;
+
 /// A curve that stays within this part of its range of where it begins, or ends, is flat.
 const FLAT: f64 = 0.01;
 
-/// When anything moves for the first and for the last time, s; none where that is more than a fifth of the run, and none of many bodies: the only motions
-/// that have plots of their own then are those of ground and supports.
-pub(crate) fn moving(recorder: &PageRecorder, panels: &Panels) -> Option<[f64; 2]> {
+/// The part of a run on which its plots open, s.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(crate) struct Opening {
+    /// When anything moves for the first and for the last time.
+    pub(crate) moves: [f64; 2],
+    /// The same with some room about it.
+    pub(crate) shown: [f64; 2],
+    /// Whether that is told of what moves on the ground, which may go on moving.
+    pub(crate) on_ground: bool,
+}
+
+/// Where the plots open; none where something moves for more than a fifth of the run, and none of many bodies: the only motions that have plots of their own
+/// then are those of ground and supports. How ground moves counts only where nothing moves on it.
+pub(crate) fn opening(recorder: &PageRecorder, panels: &Panels) -> Option<Opening> {
     if recorder.scenery.is_crowded() {
         return None;
     }
     let (times, borders) = (panels.curves.times(), panels.curves.borders());
     let run = times.last()? - times.first()?;
-    let motions = panels.panels.iter().filter(|panel| panel.place == Place::Motion).flat_map(|panel| &panel.lines);
+    let motions = || panels.panels.iter().filter(|panel| panel.place == Place::Motion);
+    let on_ground = recorder.scenery.from_ground != [false; 2] && motions().any(|panel| !panel.is_prescribed());
+    let motions = motions().filter(|panel| !(on_ground && panel.is_prescribed())).flat_map(|panel| &panel.lines);
     let spans = motions.filter_map(|line| span(line, if line.of.is_none() { &borders } else { &times }));
     let all = spans.reduce(|[a, b], [from, to]| [a.min(from), b.max(to)]);
-    all.filter(|[from, to]| to > from && to - from <= SMALL * run)
-}
-
-/// The part of the run that figures of motions show, with some room about what moves, s.
-pub(crate) fn shown(recorder: &PageRecorder, panels: &Panels) -> Option<[f64; 2]> {
-    let times = panels.curves.times();
-    let [from, to] = moving(recorder, panels)?;
-    let room = 0.25 * (to - from);
-    Some([(from - room).max(*times.first()?), (to + room).min(*times.last()?)])
+    let moves = all.filter(|[from, to]| to > from && to - from <= SMALL * run)?;
+    let room = ROOM * (moves[1] - moves[0]);
+    let shown = [(moves[0] - room).max(*times.first()?), (moves[1] + room).min(*times.last()?)];
+    Some(Opening { moves, shown, on_ground })
 }
 
 /// When a curve leaves its first value and comes to its last one.

@@ -1,7 +1,7 @@
 //! The plots over time that the page and the figures have in common: which quantities, of which bodies, in which units, by the
 //! rule of [`content`](super::content).
 
-use super::content::{LeftOut, largest};
+use super::content::{LeftOut, ROUNDING, largest};
 use super::curves::{Curves, ForceCurve};
 use super::means;
 use super::recorder::{NUMBERS, PageRecorder};
@@ -84,6 +84,13 @@ impl Source {
     /// A value as it is drawn.
     pub(crate) fn drawn(self, value: f64) -> f64 {
         self.factor * (value - self.zero)
+    }
+}
+
+impl TimePanel {
+    /// Whether it shows how ground or supports are made to move.
+    pub(crate) fn is_prescribed(&self) -> bool {
+        self.id.starts_with("ground")
     }
 }
 
@@ -290,15 +297,23 @@ impl Panels {
         lines + portraits.sum::<usize>() + forces.sum::<usize>() + 3 * self.curves.len()
     }
 
-    /// Notes that `what` isn't drawn: of whom, if it isn't of the whole scene, and what these are called together.
-    fn leave_out(&mut self, what: &'static str, of: Option<(String, &'static str)>, largest: f64, unit: &'static str) {
+    /// Notes that `what` isn't drawn: of whom, if it isn't of the whole scene, and what these are called together; its largest value and its scale.
+    fn leave_out(
+        &mut self,
+        what: &'static str,
+        of: Option<(String, &'static str)>,
+        [largest, scale]: [f64; 2],
+        unit: &'static str,
+    ) {
+        let bound = ROUNDING * scale;
         let (of, together) = of.map_or((None, ""), |(of, together)| (Some(of), together));
         match self.left_out.iter_mut().find(|known| known.what == what) {
             Some(known) => {
                 known.of.extend(of);
                 known.largest = known.largest.max(largest);
+                known.bound = known.bound.max(bound);
             }
-            None => self.left_out.push(LeftOut { what, of: of.into_iter().collect(), together, largest, unit }),
+            None => self.left_out.push(LeftOut { what, of: of.into_iter().collect(), together, largest, bound, unit }),
         }
     }
 }

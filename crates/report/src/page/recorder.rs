@@ -53,7 +53,7 @@ pub(crate) const ENERGIES: [&str; 11] = [
     "residual",
 ];
 
-/// Columns of a block in [`Curves`]: x, y, φ and their velocities. Of many blocks there are bands instead.
+/// Columns of a block in [`Curves`]: x, y, φ and their velocities, x and y from the ground where it moves ([`Scenery::from_ground`]). Of many blocks there are bands instead.
 pub(crate) const BLOCK_COLUMNS: usize = 6;
 
 /// Coordinates of a block.
@@ -292,6 +292,11 @@ impl PageRecorder {
                 let (q, v) = out.split_at_mut(3);
                 q.copy_from_slice(&state.q[block.range.clone()]);
                 v.copy_from_slice(&state.v[block.range.clone()]);
+                let Some(ground) = &self.layout.ground else { continue };
+                for axis in (0..2).filter(|axis| self.scenery.from_ground[*axis]) {
+                    q[axis] -= state.q[ground.start + axis];
+                    v[axis] -= state.v[ground.start + axis];
+                }
             }
         }
         let (of_beams, rest) = rest.split_at_mut(self.scenery.energy_column() - self.scenery.block_columns());
@@ -486,6 +491,16 @@ fn fill_frame(layout: &Layout, scenery: &Scenery, state: &State, row: &mut [f64]
 /// and y, of moving ground x, y and slope.
 pub(crate) fn moved(layout: &Layout) -> impl Iterator<Item = Range<usize>> {
     layout.beams.iter().filter_map(|beam| beam.supports.clone()).chain(layout.ground.clone())
+}
+
+/// A coordinate of a block in a row of [`Frames`], as in [`Curves`].
+pub(crate) fn coordinate_in(recorder: &PageRecorder, row: &[f64], block: usize, coordinate: usize) -> f64 {
+    let own = row[BLOCK_FRAME * block + coordinate];
+    match recorder.scenery.from_ground.get(coordinate) {
+        // The ground's x, y and slope come last.
+        Some(true) => own - row[row.len() - 3 + coordinate],
+        _ => own,
+    }
 }
 
 impl Observer<2> for PageRecorder {

@@ -178,6 +178,10 @@ pub(crate) struct Scenery {
     /// What else is prescribed of ground and supports: all of it.
     #[serde(skip)]
     pub(crate) driven: Vec<Driven>,
+    /// Whether x and y of the blocks are plotted from the ground, which moves: its own motion would hide how they slide and rock on it. Not where beams
+    /// with supports of their own may carry them.
+    #[serde(skip)]
+    pub(crate) from_ground: [bool; 2],
     /// Units of axes, width of figures.
     #[serde(skip)]
     pub(crate) display: Display,
@@ -367,12 +371,15 @@ impl Scenery {
             }
         });
         let contacts: Vec<_> = contacts.collect();
+        let (beams, driven): (Vec<BeamDrawn>, _) = (beams.collect(), Driven::of(scene, layout));
+        let ground_moves = |axis| driven.iter().any(|driven| driven.name == "ground" && driven.component == axis);
+        let from_ground = [0, 1].map(|axis| ground_moves(axis) && beams.iter().all(BeamDrawn::is_free));
         Self {
             ground: scene.ground.is_some(),
             incline: scene.ground.as_ref().map_or(0.0, |ground| ground.incline),
             profile,
             blocks: blocks.collect(),
-            beams: beams.collect(),
+            beams,
             contacts,
             points,
             hidden_points: if all > MOST_POINTS { all } else { 0 },
@@ -382,7 +389,8 @@ impl Scenery {
             forces: scene.forces.clone(),
             loads: scene.loads.clone(),
             records: scene.records().cloned().collect(),
-            driven: Driven::of(scene, layout),
+            driven,
+            from_ground,
             display: scene.display,
             weight_energy: {
                 let g = scene.gravity[0].hypot(scene.gravity[1]);

@@ -209,6 +209,14 @@ fn each_of_many_pairs_has_a_figure_that_fits_a_page() {
         own.into_iter().map(|(name, _)| name).collect::<Vec<_>>()
     };
     assert_eq!(names("2"), ["contact_forces.svg"]);
+    // Of two pairs with three panels and many points each all together would be taller than a page.
+    let both = std::fs::read_to_string(
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/two-blocks-on-beam.toml"),
+    );
+    let both = figures(&run("two-pairs", &both.unwrap()).page);
+    let own = both.iter().filter(|(name, _)| name.starts_with("contact_forces"));
+    let own: Vec<(&str, f64)> = own.map(|(name, svg)| (name.as_str(), height(svg))).collect();
+    assert!(own.len() == 2 && own.iter().all(|(_, height)| *height < 250.0), "{own:?}");
     let of_four = names("4");
     assert_eq!(of_four.len(), 4);
     // The one that lies on the other comes first.
@@ -267,7 +275,7 @@ fn figures_and_page_of_a_long_run_open_where_something_moves() {
         [force.push]\non = 'box'\nforce = ['85 N', '0 N']\nsignal = 'kick'\n[block.box]\ndensity = '800 kg/m^3'\nwidth = '20 cm'\n\
         height = '40 cm'\ndepth = '20 cm'\non = 'ground'\nat = '0 m'\n[contact.base]\nbetween = ['box', 'ground']\nfriction = 0.4\n";
     let run = run("long-wait", text);
-    let ends = numbers(&data(&run.html)["moving"]);
+    let ends = numbers(&data(&run.html)["moving"]["moves"]);
     assert!((8.0..8.5).contains(&ends[0]) && (9.0..9.5).contains(&ends[1]), "{ends:?}");
     let svg = figure(&figures(&run.page), "x.svg");
     assert!(svg.contains("Time t (s), of a run to 20 s") && svg.contains(">9.0<") && !svg.contains(">15<"), "{svg}");
@@ -276,6 +284,19 @@ fn figures_and_page_of_a_long_run_open_where_something_moves() {
         assert!(!figure(&figures(&run.page), file).contains("of a run to"), "{file}");
     }
     assert!(data(&scenario("sliding").html)["moving"].is_null(), "it moves for most of the run");
+    // It is thrown over by the first of many cycles, and lies still on ground that goes on.
+    let shaken = "[time]\nend = '20 s'\nstep = '1 ms'\n[ground]\nmotion = { acceleration = ['4 m/s^2', '0 m/s^2'], signal = 'shake' }\n\
+        [signal.shake]\nshape = 'harmonic'\nfrequency = '1 Hz'\n[block.box]\ndensity = '800 kg/m^3'\nwidth = '10 cm'\nheight = '50 cm'\n\
+        depth = '20 cm'\non = 'ground'\nat = '0 m'\n[contact.base]\nbetween = ['box', 'ground']\nfriction = 0.8\n";
+    let shaken = crate::page::run("thrown-over", shaken);
+    let page = data(&shaken.html);
+    let ends = numbers(&page["moving"]["moves"]);
+    assert!(ends[0] < 0.5 && ends[1] < 4.0, "{ends:?}");
+    let x = crate::page::panel(&page, "x").unwrap();
+    assert_eq!(x["title"], "Position x relative to the ground");
+    let travel = numbers(&x["series"][0]["y"]).iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let unit = if x["unit"] == "m" { 1.0 } else { 100.0 };
+    assert!((0.1..1.5).contains(&(travel / unit)), "the ground goes 12 m: {travel} {}", x["unit"]);
     // Of many bodies only the ground has a plot of its own.
     let crowd = "[time]\nend = '0.4 s'\nstep = '1 ms'\n[ground]\nmotion = { acceleration = ['1 m/s^2', '0 m/s^2'], signal = 'kick' }\n\
         [signal.kick]\nshape = 'one-sine'\nperiod = '20 ms'\n[block.b]\ndensity = '800 kg/m^3'\nwidth = '20 cm'\nheight = '20 cm'\n\

@@ -4,7 +4,7 @@ use super::column::{Column, SEEN, SEEN_BELOW_PEAKS};
 use super::{digits, time};
 use crate::page::curves::Does;
 use crate::page::panels::{Line, Panels, Place, unseen_slip};
-use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, BLOCK_FRAME, PageRecorder};
+use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, PageRecorder, coordinate_in};
 use crate::page::scenery::ContactDrawn;
 use crate::with_digits;
 use serde::Serialize;
@@ -68,8 +68,8 @@ impl SeriesData {
         if let Some(source) = line.of.filter(|_| panels.curves.is_thinned()) {
             let pictures = || recorder.kept.frames.rows().map(|(t, _)| t);
             // More of them than are drawn.
-            let values = match place_in_picture(recorder, source.column) {
-                Some(place) => recorder.kept.frames.rows().map(|(_, row)| Some(row[place])).collect(),
+            let values = match in_pictures(recorder, source.column) {
+                Some(values) => values.into_iter().map(Some).collect(),
                 None => {
                     let most = line.y.iter().filter(|y| y.is_finite()).fold(0.0, |most: f64, y| most.max(y.abs()));
                     recorder.kept.curves.values(source.column, pictures(), AS_GOOD * most / source.factor.abs())
@@ -101,12 +101,12 @@ impl SeriesData {
     }
 }
 
-/// Where in a picture the values of a column are: those of coordinates of blocks, which each picture has.
-fn place_in_picture(recorder: &PageRecorder, column: usize) -> Option<usize> {
+/// The values of a column in all pictures: of coordinates of blocks, which each picture has.
+fn in_pictures(recorder: &PageRecorder, column: usize) -> Option<Vec<f64>> {
     let (block, of) = (column / BLOCK_COLUMNS, column % BLOCK_COLUMNS);
     let scenery = &recorder.scenery;
     let has = !scenery.is_crowded() && block < scenery.blocks.len() && of < BLOCK_COORDINATES;
-    has.then_some(BLOCK_FRAME * block + of)
+    has.then(|| recorder.kept.frames.rows().map(|(_, row)| coordinate_in(recorder, row, block, of)).collect())
 }
 
 /// Extremes that differ by this part of the largest value are as good as the value between them.

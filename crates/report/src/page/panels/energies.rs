@@ -32,7 +32,7 @@ impl Panels {
                     drawn.push((column, label, number, values));
                 } else {
                     let what = if id == "energy" { "energy:" } else { "work:" };
-                    self.leave_out(what, Some((name.to_owned(), "")), largest(&values), "J");
+                    self.leave_out(what, Some((name.to_owned(), "")), [largest(&values), scale], "J");
                 }
             }
             // What is small beside another would be a line at zero. Energies turn into each other, and belong together as long as they are seen.

@@ -51,7 +51,7 @@ impl Panels {
             self.normal[pair] = holds(normal, strongest);
             // Of some only impacts are known, as of balls that strike each other.
             if !self.normal[pair] && points.iter().all(|(_, _, forces)| forces.impacts.is_empty()) {
-                left_out.push(("force of", of(), normal, "N"));
+                left_out.push(("force of", of(), [normal, strongest], "N"));
                 self.forces[contact.first..contact.first + contact.points.len()].fill(None);
                 continue;
             }
@@ -62,19 +62,21 @@ impl Panels {
             };
             self.tangential[pair] = holds(force, strongest);
             if !self.tangential[pair] {
-                left_out.push(("tangential force of", of(), force, "N"));
+                left_out.push(("tangential force of", of(), [force, strongest], "N"));
             }
             let reach = scenery.blocks[contact.block].reach;
             let scale = SLIP_SCALE * reach;
             // Where no point slips by its state, the rounding of what sticks has added up.
-            let slips = |forces: &ForceCurve| {
+            let scale_of = |forces: &ForceCurve| {
                 let sticks = !forces.state.contains(&ContactState::Slip);
-                holds(largest(&forces.slip), if sticks { STUCK_SCALE * scale } else { scale })
+                if sticks { STUCK_SCALE * scale } else { scale }
             };
+            let slips = |forces: &ForceCurve| holds(largest(&forces.slip), scale_of(forces));
             let slipping: Vec<_> = points.iter().filter(|(_, _, forces)| slips(forces)).collect();
             if slipping.is_empty() {
                 let most = largest(points.iter().flat_map(|(_, _, forces)| &forces.slip));
-                left_out.push(("slip of", of(), most, "m"));
+                let scale = points.iter().map(|(_, _, forces)| scale_of(forces)).fold(0.0, f64::max);
+                left_out.push(("slip of", of(), [most, scale], "m"));
                 continue;
             }
             let lines = slipping.iter().map(|(number, point, forces)| Line {
@@ -100,6 +102,6 @@ impl Panels {
             });
         }
         self.panels.extend(panels);
-        left_out.into_iter().for_each(|(what, of, most, unit)| self.leave_out(what, of, most, unit));
+        left_out.into_iter().for_each(|(what, of, sizes, unit)| self.leave_out(what, of, sizes, unit));
     }
 }

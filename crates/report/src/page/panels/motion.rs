@@ -4,7 +4,7 @@ use super::{Curves, Line, Measure, Panels, Place, Portrait, PortraitLine, Source
 use crate::driven::Driven;
 use crate::page::content::{ROUNDING, holds, largest, travel};
 use crate::page::orbit::Point;
-use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, BLOCK_FRAME, PageRecorder};
+use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, PageRecorder, coordinate_in};
 use crate::page::scenery::FREE;
 use crate::{shortest, with_digits};
 use std::collections::BTreeSet;
@@ -78,7 +78,7 @@ impl Panels {
                 if holds(travel(&values), scale) {
                     moving.push((k, values));
                 } else {
-                    self.leave_out(coordinate.of, Some((block.name.clone(), "blocks")), travel(&values), unit);
+                    self.leave_out(coordinate.of, Some((block.name.clone(), "blocks")), [travel(&values), scale], unit);
                 }
             }
             if moving.is_empty() {
@@ -89,7 +89,7 @@ impl Panels {
             // Blocks that stand far apart would all look still.
             let from_start = c != PHI && moving.len() > 1 && far < FAR * extent(&moving);
             let zero = |k: usize| match recorder.kept.frames.rows().next() {
-                Some((_, start)) if from_start => start[BLOCK_FRAME * k + c],
+                Some((_, start)) if from_start => coordinate_in(recorder, start, k, c),
                 _ => 0.0,
             };
             // Lengths are in metres until the units of the page are chosen.
@@ -119,13 +119,14 @@ impl Panels {
                     lines,
                 };
             let lines = moving.iter().map(|(k, _)| line(&self.curves, *k, c, zero(*k), factor)).collect();
-            let name = if from_start { coordinate.from_start } else { coordinate.name };
+            let on = from_ground(recorder, &self.curves, c);
+            let name = format!("{}{on}", if from_start { coordinate.from_start } else { coordinate.name });
             let size = |x: f64| match c {
                 PHI => format!("{}\u{a0}{unit}", shortest(x * factor, 2)),
                 _ => with_digits(x, "m", 2),
             };
             let note = unseen(moving.iter().map(|(k, values)| (block_label(recorder, *k), travel(values))), size);
-            self.panels.push(panel(coordinate.id, name, (measures[0], unit.to_owned()), lines, guides, least, note));
+            self.panels.push(panel(coordinate.id, &name, (measures[0], unit.to_owned()), lines, guides, least, note));
             let lines = moving.iter().map(|(k, _)| line(&self.curves, *k, 3 + c, 0.0, 1.0)).collect();
             let least = if c == PHI { 2e-3 } else { 1e-4 * reach };
             let unit = (measures[1], "rad/s".to_owned());
@@ -135,7 +136,7 @@ impl Panels {
             let note = unseen(rates, |x| with_digits(x, if c == PHI { "rad/s" } else { "m/s" }, 2));
             self.panels.push(panel(
                 coordinate.velocity_id,
-                coordinate.velocity_name,
+                &format!("{}{on}", coordinate.velocity_name),
                 unit,
                 lines,
                 Vec::new(),
@@ -171,7 +172,7 @@ impl Panels {
                 if holds(largest(&values), 1e-3 * beam.span) {
                     drawn.push((label, first + k, colour));
                 } else {
-                    self.leave_out(what, Some((label, "places")), largest(&values), "m");
+                    self.leave_out(what, Some((label, "places")), [largest(&values), 1e-3 * beam.span], "m");
                 }
             }
         }
@@ -265,11 +266,13 @@ impl Panels {
         }
     }
 
-    /// How far a block goes along an axis beside what may carry it: of the world and the prescribed motions along that axis, the one from
-    /// which it goes least far.
+    /// How far a block goes along an axis beside what may carry it: of the world, or the ground where it is plotted from that, and the prescribed motions
+    /// of beams along that axis, the one from which it goes least far.
     fn carried_travel(&self, recorder: &PageRecorder, block: usize, axis: usize) -> f64 {
         let own = self.curves.curve(BLOCK_COLUMNS * block + axis);
-        let along = recorder.scenery.driven.iter().enumerate().filter(|(_, driven)| driven.component == axis);
+        let is_other = |driven: &Driven| driven.name != "ground" || !recorder.scenery.from_ground[axis];
+        let along = recorder.scenery.driven.iter().enumerate();
+        let along = along.filter(|(_, driven)| driven.component == axis && is_other(driven));
         let beside = along.map(|(which, _)| {
             let carrier = self.curves.curve(recorder.scenery.driven_column(which));
             travel(&own.iter().zip(&carrier).map(|(own, carrier)| own - carrier).collect::<Vec<_>>())
@@ -340,11 +343,12 @@ impl Panels {
             };
             let tops = orbits.iter().filter(|_| c == PHI).filter_map(near);
             let guides = guides(tops.flatten(), factors[0]);
+            let on = from_ground(recorder, &self.curves, c);
             let portrait = Portrait {
                 id: ["phase_x", "phase_y", "phase"][c],
                 title: format!("Phase portrait: {} over {}", coordinate.velocity_symbol, coordinate.symbol),
-                x_label: coordinate.name.to_owned(),
-                y_label: coordinate.velocity_name.to_owned(),
+                x_label: format!("{}{on}", coordinate.name),
+                y_label: format!("{}{on}", coordinate.velocity_name),
                 x_unit: units[0].to_owned(),
                 y_unit: format!("{}/s", units[1]),
                 least: if c == PHI { [4e-5 * factors[0], 2e-3] } else { factors.map(|factor| 1e-4 * reach * factor) },
@@ -416,6 +420,16 @@ fn strong(points: &[Point]) -> Range<usize> {
     match about.saturating_sub(STRONG / 2) {
         from if about < STRONG || from == 0 => 0..turns[STRONG],
         from => turns[from]..turns.get(from + STRONG).copied().unwrap_or(points.len()),
+    }
+}
+
+/// What is said of a coordinate that is plotted from the ground.
+fn from_ground(recorder: &PageRecorder, curves: &Curves, coordinate: usize) -> &'static str {
+    let ground = recorder.scenery.driven.iter().position(|one| one.name == "ground" && one.component == coordinate);
+    let goes = |ground: usize| largest(&curves.curve(recorder.scenery.driven_column(ground))) > 0.0;
+    match recorder.scenery.from_ground.get(coordinate) {
+        Some(true) if ground.is_some_and(goes) => " relative to the ground",
+        _ => "",
     }
 }
 

@@ -51,7 +51,12 @@ impl Panels {
                 if holds(largest(values), scale) {
                     drawn.push((*k, label, number, values));
                 } else {
-                    self.leave_out(of, (!label.is_empty()).then_some((label, "places")), largest(values), unit);
+                    self.leave_out(
+                        of,
+                        (!label.is_empty()).then_some((label, "places")),
+                        [largest(values), scale],
+                        unit,
+                    );
                 }
             }
             if drawn.is_empty() {
