@@ -38,7 +38,9 @@ export function specksAtFirst() {
 export async function flatAtFirst(page, trajectory) {
   const [start, end] = [trajectory[0].t, trajectory[trajectory.length - 1].t];
   const moves = (key) => {
-    const values = trajectory.map((row) => row[key]);
+    // On ground that moves it counts what moves on it.
+    const ground = `ground.${key.split(".").pop()}`;
+    const values = trajectory.map((row) => row[key] - (/[xy]$/.test(key) ? row[ground] ?? 0 : 0));
     const [low, high] = values.reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
     const last = values[values.length - 1];
     // What is rounding isn't plotted.

@@ -311,7 +311,11 @@ impl Panel {
         for (k, line) in series.iter().enumerate().filter(|(_, series)| series.drawn == Drawn::Line) {
             let path = line_path(line.points(), |x| frame.px(x), py);
             let stroke = stroke(line.number_at(k), line.dash, theme);
-            let weight = if line.faint { "stroke-width=\".5\" stroke-opacity=\".25\"" } else { "stroke-width=\"1.1\"" };
+            let weight = match line.faint {
+                true => "stroke-width=\".5\" stroke-opacity=\".2\"",
+                false if is_dense(line.points(), frame, py) => "stroke-width=\"1.1\" stroke-opacity=\".45\"",
+                false => "stroke-width=\"1.1\"",
+            };
             let _ = writeln!(svg, "<path d=\"{path}\" {stroke} {weight}/>");
         }
         svg.push_str("</g>\n");
@@ -541,6 +545,23 @@ fn cells_path(corners: &[(f64, f64)], px: impl Fn(f64) -> f64, py: impl Fn(f64) 
     path
 }
 
+/// Whether a curve over ascending x goes up and down more often than once a unit of the width, by more than two units: it fills its range, as vibrations
+/// of a long run do.
+fn is_dense(points: &[(f64, f64)], frame: &Frame, py: impl Fn(f64) -> f64) -> bool {
+    let (mut turns, mut before) = (0.0, 0.0);
+    for ends in points.windows(2) {
+        let step = py(ends[1].1) - py(ends[0].1);
+        if ends[1].0 < ends[0].0 {
+            return false;
+        }
+        if step.abs() > 2.0 && frame.x.contains(ends[1].0) {
+            turns += f64::from(step * before < 0.0);
+            before = step;
+        }
+    }
+    turns > frame.width()
+}
+
 /// A line through the finite points, broken where one isn't finite; points too close for print
 /// resolution are omitted.
 fn line_path(points: &[(f64, f64)], px: impl Fn(f64) -> f64, py: impl Fn(f64) -> f64) -> String {
@@ -610,6 +631,16 @@ mod tests {
         let cells = [cell(1.0, 0.0), cell(2.0, 0.0), cell(4.0, 0.0), cell(1.0, 1.0), cell(f64::NAN, 1.0)];
         let path = cells_path(&cells.concat(), |x| x, |y| -y);
         assert_eq!(path, "M0.50 -0.50H2.50V0.50H0.50zM3.50 -0.50H4.50V0.50H3.50zM0.50 -1.50H1.50V-0.50H0.50z");
+    }
+
+    #[test]
+    fn what_fills_its_range_is_pale() {
+        let pale = |count: u32| {
+            let points = (0..count).map(|k| (f64::from(k) / f64::from(count), f64::from(k % 2)));
+            let panel = Panel::new(Axis::between("y", 0.0, 1.0)).with([Series::line("", points)]);
+            Figure::new("f", "t", Axis::between("x", 0.0, 1.0)).panel(panel).to_svg().contains("stroke-opacity")
+        };
+        assert!(pale(1000) && !pale(100));
     }
 
     #[test]

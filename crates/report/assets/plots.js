@@ -199,9 +199,22 @@ const plots = (() => {
     return `M${points(series.y).concat(points(series.upper).reverse()).join("L")}Z`;
   }
 
+  /** Whether a curve goes up and down more often than once a pixel, by more than its width: it fills its range, as vibrations of a long run do. */
+  function isDense(series, y) {
+    const [from, to] = [indexAt(series.t, view[0]), indexAt(series.t, view[1])];
+    let [turns, before] = [0, 0];
+    for (let i = from + 1; i <= to; i++) {
+      const step = y(series.y[i]) - y(series.y[i - 1]);
+      if (!(Math.abs(step) > 2)) continue;
+      if (step * before < 0) turns++;
+      before = step;
+    }
+    return turns > width() - margin.left - margin.right;
+  }
+
   function curve(series, x, y) {
     if (series.upper) return `<path class="area" style="fill: ${colour(series.index)}" d="${area(series, x, y)}"/>`;
-    return `<path class="curve${series.raw ? " raw" : ""}" style="${stroke(series)}" d="${path(series, x, y)}"/>`;
+    return `<path class="curve${series.raw ? " raw" : isDense(series, y) ? " dense" : ""}" style="${stroke(series)}" d="${path(series, x, y)}"/>`;
   }
 
   function axes(svg, size, xTicks, yTicks, x, y) {
