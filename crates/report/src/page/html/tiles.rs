@@ -144,6 +144,7 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, units: &Units) -> Strin
                 summary.max_phi_over_alpha.filter(|_| rocks).and_then(share_of_critical_angle),
             ),
             "overturned_at" => ("First overturned at", seconds(summary.overturned_at)),
+            "rests_from" if summary.rests_from == Some(0.0) => ("All at rest", Some("throughout".to_owned())),
             "rests_from" => ("All at rest from", seconds(summary.rests_from)),
             "energy.dissipated" => ("Energy dissipated", Some(lost(summary.energy.dissipated, summary, units))),
             "energy.lost_by_scheme" => {
