@@ -66,7 +66,7 @@ impl Orbit {
         }
         self.follow(point);
         if self.points.len() > POINTS {
-            *self = self.thinned((2.0 * self.tolerance).min(1.0));
+            *self = self.thinned(2.0 * self.tolerance);
         }
     }
 
