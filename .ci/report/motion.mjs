@@ -37,10 +37,11 @@ export function specksAtFirst() {
 /** Whether the plots open on a flat line: on all of a run in which something moves in its first or last twentieth only. */
 export async function flatAtFirst(page, trajectory) {
   const [start, end] = [trajectory[0].t, trajectory[trajectory.length - 1].t];
+  const fromGround = await page.evaluate(() => document.body.textContent.includes("relative to the ground"));
   const moves = (key) => {
     // On ground that moves it counts what moves on it.
     const ground = `ground.${key.split(".").pop()}`;
-    const values = trajectory.map((row) => row[key] - (/[xy]$/.test(key) ? row[ground] ?? 0 : 0));
+    const values = trajectory.map((row) => row[key] - (fromGround && /[xy]$/.test(key) ? row[ground] ?? 0 : 0));
     const [low, high] = values.reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
     const last = values[values.length - 1];
     // What is rounding isn't plotted.

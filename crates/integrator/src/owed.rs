@@ -1,6 +1,6 @@
-//! What prescribed motion is behind where a step is divided.
+//! By how much prescribed motion lags where a step is divided.
 
-use crate::{Model, Part, State, StepSpan};
+use crate::{Model, Part, STEP_ROUNDING, State, StepSpan};
 
 /// The ways by which prescribed velocities are behind in a step that is divided, and how they catch up.
 ///
@@ -74,7 +74,9 @@ impl Owed {
 
     /// Takes a part of the rest, of `h` (s), from a state, with these velocities at its end.
     pub(crate) fn take_part<const D: usize>(&mut self, model: &Model<D>, from: &State, h: f64, v_end: &[f64]) {
-        let Some(rest) = self.rest.filter(|rest| h < rest.h && model.is_driven()) else { return };
+        // What rounding leaves of a step is no part of it.
+        let is_divided = |rest: &StepSpan| rest.h - h > STEP_ROUNDING * from.dt;
+        let Some(rest) = self.rest.filter(|rest| is_divided(rest) && model.is_driven()) else { return };
         let half = 0.5 * from.dt;
         model.drive_mean_at([rest.end - half, rest.end + half], &mut self.means);
         for part in model.parts().iter().filter(|part| part.is_driven()) {

@@ -204,7 +204,7 @@ const plots = (() => {
     const [from, to] = [indexAt(series.t, view[0]), indexAt(series.t, view[1])];
     let [turns, before] = [0, 0];
     for (let i = from + 1; i <= to; i++) {
-      const step = y(series.y[i]) - y(series.y[i - 1]);
+      const step = y(series.y[i] ?? NaN) - y(series.y[i - 1] ?? NaN);
       if (!(Math.abs(step) > 2)) continue;
       if (step * before < 0) turns++;
       before = step;

@@ -55,7 +55,7 @@ const SLID: f64 = 0.01;
 /// it against what carries it tells that it isn't upright there: less is rounding.
 const BEGAN_TO_TIP: f64 = 1e-3;
 
-/// What moves on below a block lets it rest for no longer than this many times its longest pause so far.
+/// While what is below it moves on, a block rests only if it has been still for this many times its longest pause so far.
 const PAUSES: f64 = 1.5;
 
 /// A block rocks, in a word, if it got to this part of its critical angle.
@@ -210,8 +210,8 @@ struct Seen {
     fallen: bool,
     /// Since when it is still, s.
     still: Option<f64>,
-    /// How long it was still at most between two motions, s.
-    paused: f64,
+    /// How long it was still at most between two motions, s; `None` before the first.
+    paused: Option<f64>,
     /// Whether its mass centre has been over its beam, and since when it is past an end, s, and which.
     over: bool,
     out: Option<(f64, Way)>,
@@ -552,9 +552,8 @@ impl Fates {
                 seen.still.or(Some(t))
             } else {
                 // Before it moved for the first time it did not pause.
-                if let Some(since) = seen.still.filter(|since| *since > 0.0) {
-                    seen.paused = seen.paused.max(before - since);
-                }
+                let pause = seen.paused.and(seen.still).map_or(0.0, |since| before - since);
+                seen.paused = Some(seen.paused.map_or(0.0, |longest| longest.max(pause)));
                 None
             };
             if let Some(past) = watched.carrier.past_end([q[0], q[1]], layout, &state.q) {
@@ -574,7 +573,7 @@ impl Fates {
 
     /// Since when it rests at the time `t` (s). While what is below it moves on it may only pause, as it did before.
     fn rests(seen: &Seen, watched: &Watched, t: f64) -> Option<f64> {
-        let pause = if t < watched.driven_until { PAUSES * seen.paused } else { 0.0 };
+        let pause = seen.paused.filter(|_| t < watched.driven_until).map_or(0.0, |longest| PAUSES * longest);
         seen.still.filter(|since| t - since >= watched.still_time.max(pause))
     }
 
@@ -648,13 +647,17 @@ impl Seen {
         let slid = self.stood.zip(place).map(|(from, to)| to - from).filter(|_| overturned.is_none() && fell.is_none());
         let least = SLID * watched.base();
         let has_slid = slid.is_some_and(|slid| slid.abs() >= least);
-        let to_and_fro = slid.is_some() && self.slides.is_to_and_fro();
+        let to_and_fro = slid.is_some_and(|slid| self.slides.is_to_and_fro(slid));
         // One that has come down on a corner and can't turn over any more rocks, though it hasn't settled yet.
         let settling = self.settling.filter(|settling| state.t - settling.since >= FLAT * watched.still_time);
         let part = self.part.or(settling.map(|settling| settling.part));
-        let rocked = part.is_some_and(|part| part >= ROCKED);
+        let lately = |last: f64| state.t - last < FLAT * watched.still_time;
+        let rocked = match settling {
+            Some(settling) if self.part.is_none() => settling.rocked.is_some_and(lately),
+            _ => part.is_some_and(|part| part >= ROCKED),
+        };
         // What came down and slid off since doesn't rock any more.
-        let only_slides = has_slid && self.rocked.is_some_and(|last| state.t - last >= FLAT * watched.still_time);
+        let only_slides = has_slid && self.rocked.is_some_and(|last| !lately(last));
         let peak = rocking.and_then(|monitor| {
             let of_crossings = || monitor.peaks().last().copied();
             let largest = || Some(monitor.extreme()).filter(|peak| peak.phi != 0.0);
@@ -747,7 +750,9 @@ impl Seen {
                 let q = &state.q[layout.blocks[number].range.clone()];
                 let [vx, vy, _] = watched.carrier.velocity([q[0], q[1]], layout, state);
                 let moves = state.t < watched.driven_until || vx.hypot(vy) > watched.still_speed;
-                going.is_some_and(Going::stays) && moves
+                // What rides on a driven block is told to stand on it.
+                let is_told = going == Some(Going::Rides) && watched.carrier.is_by_block();
+                going.is_some_and(Going::stays) && moves && !is_told
             }),
             going,
             tips,

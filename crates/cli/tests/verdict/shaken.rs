@@ -50,6 +50,32 @@ fn a_slide_up_a_slope_and_down_again_is_not_to_and_fro() {
     assert!(headline(&ran).contains("up the slope, then"), "{}", headline(&ran));
 }
 
+/// Long after its ground has stopped it slides down, far farther than it went to and fro.
+#[test]
+fn what_slides_on_after_it_was_shaken_does_not_go_to_and_fro() {
+    let text = "[time]\nend = '2 s'\nstep = '1 ms'\n[ground]\nincline = '10 deg'\n\
+                motion = { acceleration = ['12 m/s^2', '0 m/s^2'], signal = 's' }\n[signal.s]\nshape = 'one-sine'\nperiod = '0.3 s'\n\
+                [material.m]\ndensity = '2000 kg/m^3'\n[block.b]\nmaterial = 'm'\nwidth = '30 cm'\nheight = '5 cm'\ndepth = '10 cm'\n\
+                on = 'ground'\nat = '0 m'\nvelocity = ['0.8 m/s', '0.141 m/s']\n[contact.c]\nbetween = ['b', 'ground']\nfriction = 0.1\n";
+    let ran = written(&folder("verdict-shaken-once"), text);
+    let told = headline(&ran);
+    assert!(
+        told.starts_with("`b` slides on, slid 38.42 mm up the slope, then to ") && told.ends_with(" so far"),
+        "{told}"
+    );
+}
+
+#[test]
+fn ground_with_an_amplitude_of_zero_does_not_move() {
+    let text = "[time]\nend = '2 s'\nstep = '1 ms'\n[ground]\nmotion = { acceleration = ['0 m/s^2', '0 m/s^2'], signal = 'shake' }\n\
+                [signal.shake]\nshape = 'harmonic'\nfrequency = '1.5 Hz'\n[material.m]\ndensity = '2000 kg/m^3'\n[block.b]\n\
+                material = 'm'\nwidth = '30 cm'\nheight = '5 cm'\ndepth = '10 cm'\non = 'ground'\nat = '0 m'\nvelocity = ['0.8 m/s', '0 m/s']\n\
+                [contact.c]\nbetween = ['b', 'ground']\nfriction = 0.4\n";
+    let ran = written(&folder("verdict-shaken-by-nothing"), text);
+    let told = headline(&ran);
+    assert!(told.contains("to the right and came to rest at t = "), "{told}");
+}
+
 /// A slab that ground with a period of 5/6 s overturns.
 fn slab(name: &str, end: &str) -> Ran {
     let text = format!(

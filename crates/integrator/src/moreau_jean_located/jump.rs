@@ -27,7 +27,7 @@ const NOTABLE: f64 = 1e-2;
 const USUAL_RISES: usize = 32;
 
 /// A time in which a load on a part changes at once, s; of a jump both ends are the same.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Rise {
     begin: f64,
     end: f64,
@@ -114,11 +114,13 @@ impl Rises {
             return Cursor { until: steps * step, at_break: false, breaks: 0, ..from };
         }
         let is_short = from.at_break && end - begin <= LONGEST_RISE * step;
-        if is_short && self.is_steep(part, [begin, end]) {
-            self.found.push(Rise { begin, end });
+        // Loads with one signal have the same breaks.
+        let (rise, jump) = (Rise { begin, end }, Rise { begin: end, end });
+        if is_short && !self.found.contains(&rise) && self.is_steep(part, [begin, end]) {
+            self.found.push(rise);
         }
-        if self.is_jump(part, end) {
-            self.found.push(Rise { begin: end, end });
+        if !self.found.contains(&jump) && self.is_jump(part, end) {
+            self.found.push(jump);
         }
         Cursor { until: end, at_break: true, breaks: if is_same_step { from.breaks + 1 } else { 1 }, ..from }
     }

@@ -78,7 +78,7 @@ pub(crate) fn told(left_out: &[LeftOut]) -> String {
         return String::new();
     }
     let list: Vec<String> = left_out.iter().map(LeftOut::told).collect();
-    format!("Not drawn, as it is no more than the rounding of all steps may add up to: {}.", list.join("; "))
+    format!("Not drawn, because rounding alone could add up to as much: {}.", list.join("; "))
 }
 
 /// A number with one digit as a power of ten: `3 × 10⁻¹²`.
@@ -130,7 +130,7 @@ mod tests {
             unit: "rad",
         };
         let text = told(&[left_out("φ of", 1, 3e-12), left_out("slip of", 0, 0.0)]);
-        assert!(text.ends_with("add up to: φ of b0 (3 × 10⁻¹² rad, drawn from 10⁻⁸ on); slip (0)."), "{text}");
+        assert!(text.ends_with("add up to as much: φ of b0 (3 × 10⁻¹² rad, drawn from 10⁻⁸ on); slip (0)."), "{text}");
         let text = told(&[left_out("φ of", 2, 3e-12), left_out("x of", 15, 4e-12)]);
         assert!(
             text.ends_with(

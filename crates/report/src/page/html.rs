@@ -201,7 +201,7 @@ fn not_drawn(panels: &Panels) -> String {
         let space = if text.is_empty() { "" } else { " " };
         let _ = write!(
             text,
-            "{space}No phase portrait of {}: the velocity turns more often than a curve of 4000 points can show.",
+            "{space}No phase portrait of {}: the velocity turns more often than a curve of the points that a page has room for can show.",
             panels.untraced.join(", ")
         );
     }

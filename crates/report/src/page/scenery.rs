@@ -373,7 +373,10 @@ impl Scenery {
         let contacts: Vec<_> = contacts.collect();
         let (beams, driven): (Vec<BeamDrawn>, _) = (beams.collect(), Driven::of(scene, layout));
         let ground_moves = |axis| driven.iter().any(|driven| driven.name == "ground" && driven.component == axis);
-        let from_ground = [0, 1].map(|axis| ground_moves(axis) && beams.iter().all(BeamDrawn::is_free));
+        // Only where all bodies may stand on it, and where it doesn't turn.
+        let all_free =
+            beams.iter().all(BeamDrawn::is_free) && scene.blocks.iter().all(|block| !block.motion.is_given());
+        let from_ground = [0, 1].map(|axis| ground_moves(axis) && !ground_moves(2) && all_free);
         Self {
             ground: scene.ground.is_some(),
             incline: scene.ground.as_ref().map_or(0.0, |ground| ground.incline),

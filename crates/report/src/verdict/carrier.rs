@@ -52,10 +52,14 @@ fn support(scene: &Scene, block: usize) -> Option<SupportingBody> {
     }
 }
 
+/// That which moves so, if it does: the motion of what is fixed is zero.
+fn moving(driven: Driven, motion: &MotionScene) -> Option<(Driven, &MotionScene)> {
+    motion.0.iter().flatten().any(|axis| axis.amplitude != 0.0).then_some((driven, motion))
+}
+
 /// What moves as prescribed below a block, directly or below other blocks, and how; `None` where nothing does.
 pub(super) fn driven_below(scene: &Scene, number: usize) -> Option<(Driven, &MotionScene)> {
-    let given = |driven: Driven, motion| MotionScene::is_given(motion).then_some((driven, motion));
-    let ground = || scene.ground.as_ref().and_then(|ground| given(Driven::Ground, &ground.motion));
+    let ground = || scene.ground.as_ref().and_then(|ground| moving(Driven::Ground, &ground.motion));
     let mut block = number;
     // At most as many storeys as there are blocks.
     for _ in 0..scene.blocks.len() {
@@ -63,14 +67,12 @@ pub(super) fn driven_below(scene: &Scene, number: usize) -> Option<(Driven, &Mot
             Some(SupportingBody::Block(below)) => {
                 let motion = &scene.blocks[below].motion;
                 if motion.is_given() {
-                    // Of a fixed block it is zero.
-                    let moves = motion.0.iter().flatten().any(|axis| axis.amplitude != 0.0);
-                    return moves.then_some((Driven::Block, motion));
+                    return moving(Driven::Block, motion);
                 }
                 block = below;
             }
             Some(SupportingBody::Beam(beam)) => {
-                return given(Driven::Supports, &scene.beams[beam].motion);
+                return moving(Driven::Supports, &scene.beams[beam].motion);
             }
             Some(SupportingBody::Ground) => return ground(),
             // In a crowd, or alone.
@@ -149,6 +151,11 @@ impl Carrier {
             On::Block(_) => Some("a block"),
             On::Fixed => None,
         }
+    }
+
+    /// Whether that is a block.
+    pub(super) fn is_by_block(&self) -> bool {
+        matches!(self.root, On::Block(_))
     }
 
     /// Velocity and angular velocity of what carries the block, where the block is.

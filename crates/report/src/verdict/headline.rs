@@ -373,8 +373,8 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
     let others = || {
         let stayed = verdict.iter().filter(|of| !matches!(of.what, Fate::Fell | Fate::Overturned));
         stayed.map(|of| {
-            let column = bases.iter().find(|base| is_on(of, base)).and_then(|base| base.column);
-            (of, column.or(of.max_phi_over_alpha))
+            let base = bases.iter().find(|base| is_on(of, base)).filter(|base| base.column.is_some());
+            base.map_or((of, of.max_phi_over_alpha), |base| (base, base.column))
         })
     };
     let known = others().filter_map(|(of, part)| Some((of, part?)));

@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+/// What has slid on for this many times its longest way to or fro goes its own way.
+const USUAL: f64 = 2.0;
+
 /// The way that a block has slid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Slides {
@@ -13,6 +16,10 @@ pub(super) struct Slides {
     sense: i8,
     /// How often it has turned round, by more than is told.
     turns: u32,
+    /// Where it last did, or its start, m.
+    turned_at: f64,
+    /// The longest way from one such place to the next, m.
+    longest: f64,
 }
 
 impl Slides {
@@ -27,13 +34,17 @@ impl Slides {
             (_, true) if self.sense != -1 => -1,
             _ => return,
         };
-        self.turns += u32::from(self.sense != 0);
+        if self.sense != 0 {
+            let turned_at = if sense > 0 { left } else { right };
+            self.longest = self.longest.max((turned_at - self.turned_at).abs());
+            (self.turned_at, self.turns) = (turned_at, self.turns + 1);
+        }
         (self.sense, self.since_turn) = (sense, [at; 2]);
     }
 
-    /// Whether it slid to one side, back, and on again: from then on it goes to and fro.
-    pub(super) fn is_to_and_fro(&self) -> bool {
-        self.turns >= 2
+    /// Whether it slides to and fro: it slid to one side, back, and on again, and since then not farther than is usual for it, to where it is (m).
+    pub(super) fn is_to_and_fro(&self, at: f64) -> bool {
+        self.turns >= 2 && (at - self.turned_at).abs() <= USUAL * self.longest
     }
 
     /// The farthest to the left and to the right of its start that it has been, m.
@@ -75,7 +86,8 @@ mod tests {
             let slides = along(&places);
             assert_eq!((slides.turns, slides.reached), (turns, reached), "{places:?}");
         }
-        assert!(along(&[2.0, 0.5, 2.0]).is_to_and_fro() && !along(&[2.0, -9.0]).is_to_and_fro());
+        assert!(along(&[2.0, 0.5, 2.0]).is_to_and_fro(2.0) && !along(&[2.0, -9.0]).is_to_and_fro(-9.0));
+        assert!(!along(&[2.0, 0.5, 2.0, 9.0]).is_to_and_fro(9.0), "it goes on to the right");
     }
 
     #[test]

@@ -297,6 +297,14 @@ fn figures_and_page_of_a_long_run_open_where_something_moves() {
     let travel = numbers(&x["series"][0]["y"]).iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let unit = if x["unit"] == "m" { 1.0 } else { 100.0 };
     assert!((0.1..1.5).contains(&(travel / unit)), "the ground goes 12 m: {travel} {}", x["unit"]);
+    // A post that isn't on that ground would seem to move.
+    let beside = "[time]\nend = '1 s'\nstep = '1 ms'\n[ground]\nmotion = { acceleration = ['4 m/s^2', '0 m/s^2'], signal = 'shake' }\n\
+        [signal.shake]\nshape = 'harmonic'\nfrequency = '1 Hz'\n[block.box]\ndensity = '800 kg/m^3'\nwidth = '30 cm'\nheight = '20 cm'\n\
+        depth = '20 cm'\non = 'ground'\nat = '0 m'\n[block.post]\nfixed = true\nwidth = '10 cm'\nheight = '20 cm'\ndepth = '20 cm'\n\
+        density = '800 kg/m^3'\nposition = ['5 m', '1 m']\n[contact.base]\nbetween = ['box', 'ground']\nfriction = 0.2\n";
+    let page = data(&crate::page::run("post-beside", beside).html);
+    let x = crate::page::panel(&page, "x").unwrap();
+    assert!(!x["title"].as_str().unwrap().contains("relative") && !x["series"].to_string().contains("post"), "{x}");
     // Of many bodies only the ground has a plot of its own.
     let crowd = "[time]\nend = '0.4 s'\nstep = '1 ms'\n[ground]\nmotion = { acceleration = ['1 m/s^2', '0 m/s^2'], signal = 'kick' }\n\
         [signal.kick]\nshape = 'one-sine'\nperiod = '20 ms'\n[block.b]\ndensity = '800 kg/m^3'\nwidth = '20 cm'\nheight = '20 cm'\n\

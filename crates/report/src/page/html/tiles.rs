@@ -88,13 +88,16 @@ fn as_told(x: f64, unit: &str) -> String {
 /// The tiles of the block that slid farthest, of those that didn't overturn or fall: how far, and how fast it slides on.
 fn sliding(summary: &Summary) -> Vec<(String, String, String)> {
     let slid = summary.verdict.iter().enumerate().filter(|(_, of)| of.what == Fate::Slid);
-    let far = |of: &BodyVerdict| of.slid.map_or(0.0, f64::abs);
+    let far =
+        |of: &BodyVerdict| [of.slid, of.farthest].into_iter().flatten().fold(0.0, |far: f64, way| far.max(way.abs()));
     let Some((number, of)) = slid.max_by(|a, b| far(a.1).total_cmp(&far(b.1))) else { return Vec::new() };
     let tile = |key: &str, label: String, value: Option<f64>, unit| {
         value.map(|value| (format!("verdict.{number}.{key}"), label, as_told(value, unit)))
     };
     let [slid, farthest] = [of.slid, of.farthest].map(|way| way.map(f64::abs));
     let farthest = farthest.filter(|farthest| slid.is_none_or(|slid| *farthest > slid));
+    // Where something that goes to and fro is at the end says little.
+    let slid = slid.filter(|_| of.to_and_fro.is_none() || farthest.is_none());
     let whose = if summary.verdict.len() > 1 { format!(" ({})", of.body) } else { String::new() };
     let tiles = [
         tile("slid", format!("Slid by{whose}"), slid, "m"),
