@@ -40,11 +40,7 @@ impl<'a, const D: usize> Operator<'a, D> {
     /// The velocities at all contacts.
     pub(crate) fn velocities(&self, q: &[Vector<D>], p: &[Vector<D>], u: &mut [Vector<D>]) {
         match self {
-            Self::Blocks(h) => {
-                for (i, (u, q)) in u.iter_mut().zip(q).enumerate() {
-                    *u = row_product(h, i, q, p);
-                }
-            }
+            Self::Blocks(h) => row_products(h, q, p, u),
             Self::Product(problem) => {
                 for (i, u) in u.iter_mut().enumerate() {
                     *u = problem.velocity(i, p);
@@ -73,6 +69,37 @@ pub(crate) fn row_product<const D: usize>(
         }
     }
     Vector::from_fn(|r, _| (0..D).fold(start[r], |total, c| total + sums[c][r]))
+}
+
+/// `u_i = start_i + Σ_j H_ij p_j` for all rows, with the sums of [`row_product`]. Contacts of the same two bodies are mostly
+/// neighbours and their rows have the same columns: two such rows at once read p and the columns once, and have
+/// twice as many independent sums.
+fn row_products<const D: usize>(h: &BlockSparse<D>, start: &[Vector<D>], p: &[Vector<D>], u: &mut [Vector<D>]) {
+    let mut i = 0;
+    while i < u.len() {
+        let (first, second) = (h.range(i), if i + 1 < u.len() { h.range(i + 1) } else { 0..0 });
+        let columns = &h.columns()[first.clone()];
+        if *columns != h.columns()[second.clone()] {
+            u[i] = row_product(h, i, &start[i], p);
+            i += 1;
+            continue;
+        }
+        let mut sums = [[[0.0; D]; D]; 2];
+        let blocks = h.blocks()[first].iter().zip(&h.blocks()[second]);
+        for ((one, two), &j) in blocks.zip(columns) {
+            let x = &p[j].data.0[0];
+            for c in 0..D {
+                for r in 0..D {
+                    sums[0][c][r] += one.data.0[c][r] * x[c];
+                    sums[1][c][r] += two.data.0[c][r] * x[c];
+                }
+            }
+        }
+        for (sums, i) in sums.iter().zip([i, i + 1]) {
+            u[i] = Vector::from_fn(|r, _| (0..D).fold(start[i][r], |total, c| total + sums[c][r]));
+        }
+        i += 2;
+    }
 }
 
 /// The step of contact `i` in isolation: the inverse of the mean of its block's diagonal, 1/m.
