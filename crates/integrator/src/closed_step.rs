@@ -64,6 +64,8 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     /// What was found of the new ones.
     found: Candidates<D>,
     found_rooms: Vec<f64>,
+    /// On which piece of its surface a contact is, at q̃_m and at q̃.
+    pieces: [Vec<u32>; 2],
     pub(crate) grazing: Grazing<D>,
     /// Of each body: how deep it is in what it was on before, m.
     depths: Vec<f64>,
@@ -90,6 +92,10 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
 /// tolerance within a step: more than rounding, and so little that no approach is too slow to be
 /// seen.
 pub(crate) const SINKING: f64 = 1e-3;
+
+/// A contact that closes from one piece of its surface to another has turned onto that one where the turning of its frame accounts for so much of
+/// its approach.
+const TURNED: f64 = 0.5;
 
 /// A contact that leaves faster than this part of Σ|J_i v| is open after the step, v the larger of
 /// v¹ and v_free: what was stopped has no velocity left to tell its rounding by.
@@ -122,6 +128,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             new: Vec::new(),
             found: Vec::new(),
             found_rooms: Vec::new(),
+            pieces: [const { Vec::new() }; 2],
             grazing: Grazing::default(),
             depths: Vec::new(),
             landings: Vec::new(),
@@ -159,6 +166,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.stage.reserve(model);
         self.row.reserve(1, model.size().row, model.parts().len());
         self.found_rooms.reserve(contacts);
+        self.pieces.iter_mut().for_each(|pieces| pieces.reserve(1));
         self.grazing.reserve(contacts);
         for ids in [&mut self.closed, &mut self.looked, &mut self.new] {
             ids.reserve(contacts);
@@ -448,9 +456,11 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         let (before_t, b_t) = (tangential(&u_before), tangential(&b));
         let mut shift = if (before_t - b_t).norm() <= b_t.norm() { before_t } else { b_t };
         shift[0] = if (u_before[0] - b[0]).abs() <= b[0].abs() { u_before[0] } else { b[0].max(u_before[0]) };
-        let persisting = self.stage.contacts()[i].persisting;
+        let mut persisting = self.stage.contacts()[i].persisting;
         if !persisting && u_before[0] < 0.0 {
-            shift[0] = 0.0;
+            let turned = self.turns_onto_a_side(model, candidate.id, u_before[0], b[0]);
+            // It goes along the side then, as if it had been there before.
+            (shift[0], persisting) = if turned { (b[0], true) } else { (0.0, false) };
         }
         self.resting_shift.push(shift[0]);
         self.slides.push(before_t - tangential(&shift));
@@ -469,6 +479,20 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             restitute(persisting, law, &u_before, &whole, &mut shift)
         };
         self.stage.set(i, u_before, u_free, shift, rule)
+    }
+
+    /// Whether a contact that closes, with normal velocity `u` at q̃_m, does so by the turning of its frame up to q̃ alone, by which its normal
+    /// velocity changes by `b` (m/s): as of a disc that rolls from one block onto the next, flush with it, over whose corner it is at
+    /// q̃_m, and over whose side at q̃. When it touched, it was just there, and there was no impact.
+    fn turns_onto_a_side(&mut self, model: &Model<D>, id: ContactId, u: f64, b: f64) -> bool {
+        if !(b >= TURNED * -u) {
+            return false;
+        }
+        let [middle, ahead] = &mut self.pieces;
+        for (q, pieces) in [(&self.q_mid, &mut *middle), (&self.q_ahead, &mut *ahead)] {
+            model.detector().pieces(&model.placed_at(q), &[id], pieces);
+        }
+        middle != ahead
     }
 
     /// The gap of a contact at q⁰, m; 0 where it has none. Only a step with a new contact pays for

@@ -110,6 +110,8 @@ pub struct EventDriven {
     mean: Vec<f64>,
     v_before: Vec<f64>,
     open: Vec<Open>,
+    /// Contacts that leave at the end of a step.
+    leaving: Vec<Open>,
     watched: Vec<Watch>,
     /// The last contacts, where an event changes them.
     touching: Candidates<2>,
@@ -191,6 +193,7 @@ impl EventDriven {
             mean: Vec::new(),
             v_before: Vec::new(),
             open: Vec::new(),
+            leaving: Vec::new(),
             watched: Vec::new(),
             touching: Vec::new(),
             found: Vec::new(),
@@ -246,6 +249,7 @@ impl Scheme<2> for EventDriven {
         let (size, contacts) = (model.size(), model.contacts_to_expect().min(crate::stage::RESERVED_CONTACTS));
         let numbers = 1 + REMEMBERED * contacts;
         self.open.reserve(contacts);
+        self.leaving.reserve(contacts);
         self.watched.reserve(4 * contacts);
         self.ids.reserve(contacts);
         self.touching.reserve(2 * contacts);

@@ -8,12 +8,28 @@ use crate::numbers;
 use crate::record::Record;
 use crate::units;
 
+/// By how much a header's peak or duration may differ from the values', as a part of them, and a peak also in m/s².
+const ROUNDED: f64 = 1e-2;
+const LAST_DIGIT: f64 = 1e-5;
+
+/// What a header says of the values.
+#[derive(Clone, Copy)]
+struct Stated<'a> {
+    line: usize,
+    /// The unit of the value, in SI units.
+    unit: f64,
+    value: &'a str,
+}
+
 /// The entries of a header that are used.
 #[derive(Default)]
 struct EsmHeader<'a> {
     count: Option<(usize, usize)>,
     step: Option<f64>,
     unit: Option<f64>,
+    /// What it says of the values, for comparison.
+    peak: Option<Stated<'a>>,
+    duration: Option<Stated<'a>>,
     network: &'a str,
     station: &'a str,
     station_name: &'a str,
@@ -42,6 +58,9 @@ impl<'a> EsmHeader<'a> {
                 return Err(RecordError::NotAcceleration { line, found: shown(value), remedy: "" });
             }
             "UNITS" => self.unit = Some(units::acceleration(line, value)?),
+            "DURATION_S" => self.duration = Some(Stated { line, unit: 1.0, value }),
+            "PGA_CM/S^2" => self.peak = Some(Stated { line, unit: 0.01, value }),
+            "PGA_M/S^2" => self.peak = Some(Stated { line, unit: 1.0, value }),
             "NETWORK" => self.network = value,
             "STATION_CODE" => self.station = value,
             "STATION_NAME" => self.station_name = value,
@@ -49,6 +68,31 @@ impl<'a> EsmHeader<'a> {
             "EVENT_DATE_YYYYMMDD" => self.date = value,
             "STREAM" => self.stream = value,
             _ => {}
+        }
+        Ok(())
+    }
+
+    /// Refuses values that the header contradicts: by their peak, or their duration. An entry that is empty, or no number, says
+    /// nothing; both are rounded, and a duration may or may not count the last interval.
+    fn check(&self, record: &Record) -> Result<(), RecordError> {
+        let stated = |entry: Option<Stated<'a>>| entry.and_then(|of| Some((of, numbers::one(of.value)?)));
+        let largest = record.accelerations().iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        if let Some((Stated { line, unit, .. }, peak)) = stated(self.peak)
+            && !((peak.abs() * unit - largest).abs() <= ROUNDED * largest + LAST_DIGIT)
+        {
+            let found = largest / unit;
+            let reason = format!("the header gives a peak of {peak}, but the largest of the values is {found}");
+            return Err(RecordError::Header { line, reason });
+        }
+        let (count, step) = (record.accelerations().len(), record.dt());
+        let duration = step * count as f64;
+        if let Some((Stated { line, .. }, stated)) = stated(self.duration)
+            && !((stated - duration).abs() <= 1.5 * step + ROUNDED * duration)
+        {
+            let reason = format!(
+                "the header gives a duration of {stated} s, but its {count} values at {step} s take {duration} s"
+            );
+            return Err(RecordError::Header { line, reason });
         }
         Ok(())
     }
@@ -98,7 +142,9 @@ pub(crate) fn read(text: &str) -> Result<Record, RecordError> {
         }
         accelerations.push(value * unit);
     }
-    Ok(Record::new("", step, accelerations)?.described(&header.station(), &header.description()))
+    let record = Record::new("", step, accelerations)?;
+    header.check(&record)?;
+    Ok(record.described(&header.station(), &header.description()))
 }
 
 #[cfg(test)]
@@ -136,6 +182,25 @@ mod tests {
             "this ESM file has no SAMPLING_INTERVAL_S in its header"
         );
         assert_eq!(message("UNITS: cm/s^2\n", ""), "this ESM file has no UNITS in its header");
+        let told = |entry: &str| read(&FILE.replace("USER5:", entry)).unwrap_err();
+        assert_eq!(
+            told("PGA_CM/S^2: 8.000"),
+            "line 14: the header gives a peak of 8, but the largest of the values is 25"
+        );
+        assert_eq!(
+            told("DURATION_S: 9.025"),
+            "line 14: the header gives a duration of 9.025 s, but its 3 values at 0.005 s take 0.015 s"
+        );
+        for fits in [
+            "PGA_CM/S^2: -25.000",
+            "PGA_CM/S^2: 25.002",
+            "PGA_M/S^2: 0.25",
+            "PGA_CM/S^2:",
+            "DURATION_S: 0.01",
+            "DURATION_S: 0.015",
+        ] {
+            assert!(read(&FILE.replace("USER5:", fits)).is_ok(), "{fits}");
+        }
         assert!(message("cm/s^2", "cm/s").starts_with("line 10: `cm/s` is not a known unit of acceleration: m/s^2, "));
         assert_eq!(
             message(": ACCELERATION", ": VELOCITY"),

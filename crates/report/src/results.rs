@@ -246,6 +246,13 @@ impl Results {
         let results = Self::reopen_of(&FILES, folder)?;
         // While the summary stands, the folder looks like one of a run that has ended.
         results.remove("summary.json")?;
+        // The whole run may have other figures than the part that had ended: something went its own way, or came to rest.
+        for file in FILES.iter().filter(|file| **file == "report.html" || file.starts_with("figures/")) {
+            let path = results.folder.join(file);
+            for path in members_beside(&path).into_iter().chain([path]) {
+                remove_if_there(&path)?;
+            }
+        }
         Ok(results)
     }
 

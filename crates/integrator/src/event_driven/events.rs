@@ -363,7 +363,57 @@ impl EventDriven {
                 return Ok(Some(meet.0 * h));
             }
         }
-        self.dip_beside(model, h, work)
+        let beside = self.dip_beside(model, h, work)?;
+        if beside.is_some() { Ok(beside) } else { self.dip_by_another(model, h, work) }
+    }
+
+    /// A shorter step where two bodies touch within this one of `h` (s) by a contact that is open at neither end, or
+    /// there at one of them only: as one contact of theirs approaches at the start, and another one leaves at the end.
+    fn dip_by_another(&mut self, model: &Model<2>, h: f64, work: &mut Workspace<2>) -> Result<Option<f64>, StepError> {
+        let (nq, nv) = (model.size().q, model.size().v);
+        let (q, v) = (&self.rk.end[..nq], &self.rk.end[nq..nq + nv]);
+        let is_near = |open: &Open| !open.is_prescribed && open.gap >= 0.0 && open.gap < -FASTER * h * open.rate;
+        if !self.open.iter().any(is_near) {
+            return Ok(None);
+        }
+        self.leaving.clear();
+        // Those of the step's end still.
+        for candidate in &work.candidates {
+            let pair = candidate.id.pair();
+            let approaches = |open: &Open| open.id.pair() == pair && open.id != candidate.id && is_near(open);
+            if candidate.gap < 0.0 || !self.open.iter().any(approaches) {
+                continue;
+            }
+            let rate = rate_at(&mut self.smooth.stage, model, q, candidate, v)?;
+            if rate > 0.0 {
+                self.leaving.push(Open { id: candidate.id, gap: candidate.gap, rate, is_prescribed: false });
+            }
+        }
+        let tolerance = self.located.tolerance(q);
+        for end in &self.leaving {
+            for start in self.open.iter().filter(|open| open.id.pair() == end.id.pair() && open.id != end.id) {
+                if !is_near(start) {
+                    continue;
+                }
+                let [_, (s, low)] = GapCubic::new([start.gap, end.gap], [start.rate, end.rate], h).lows();
+                if !(s > 0.01 && s < 0.99 && low < -tolerance) {
+                    continue;
+                }
+                place_on_way([&self.y, &self.rk.end], nq, nv, s, h, &mut self.way);
+                work.detect(model, &self.way, 0.0)?;
+                let is_new = |touch: &Candidate<2>| {
+                    let at = self.open.binary_search_by_key(&touch.id, |open| open.id);
+                    let level = at.map_or(0.0, |at| self.open[at].gap.min(0.0));
+                    touch.id.pair() == end.id.pair()
+                        && touch.gap < level - tolerance
+                        && !self.smooth.contacts.iter().any(|contact| contact.id == touch.id)
+                };
+                if work.candidates.iter().any(is_new) {
+                    return Ok(Some(s * h));
+                }
+            }
+        }
+        Ok(None)
     }
 
     /// A shorter step where an open contact goes into its surface and then beside it, so that it isn't among those that
@@ -470,4 +520,18 @@ impl EventDriven {
         }
         Ok(tau)
     }
+}
+
+/// The coordinates at the part `s` of a step of `h` (s) with this state at its ends: by the cubics through coordinates and velocities
+/// where these belong to each other, else on the straight way.
+fn place_on_way([start, end]: [&[f64]; 2], nq: usize, nv: usize, s: f64, h: f64, way: &mut Vec<f64>) {
+    way.clear();
+    way.extend((0..nq).map(|k| {
+        let mean = end[k] - start[k];
+        let bend = match nq == nv {
+            true => (1.0 - s) * (h * start[nq + k] - mean) - s * (h * end[nq + k] - mean),
+            false => 0.0,
+        };
+        start[k] + s * mean + s * (1.0 - s) * bend
+    }));
 }

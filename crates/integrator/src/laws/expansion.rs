@@ -19,6 +19,7 @@ impl<const D: usize> Laws<D> {
         stop: &Stop<'_>,
     ) -> Result<Outcome, ProblemError> {
         let n = set.len();
+        self.start_blow_from_nothing(set);
         self.base.clear();
         self.base.resize(n, Vector::zeros());
         self.rows.clear();
@@ -54,6 +55,19 @@ impl<const D: usize> Laws<D> {
             }
         }
         Ok(join(outcome, self.expand(set, solver, stop)?))
+    }
+
+    /// Sets the impulses from which the solver starts to 0 where some of what it finds is given back.
+    ///
+    /// In a jam, as of a stone between the floor and a wall at μ > 1, impulses along a direction of the contacts do
+    /// nothing, and stay as large as they were at the start. Started from those of the last blow, they would
+    /// be 1 + e times as large after each, until their rounding throws the stone away.
+    fn start_blow_from_nothing(&self, set: &mut Problem<D>) {
+        let gives_back = |rule: &Rule<D>| matches!(rule, Rule::Poisson { e, .. } if *e > 0.0);
+        let strikes = |i: usize| is_impact(1.0, &set.u_before(i), &set.u_free(i));
+        if set.rules().any(gives_back) && (0..set.len()).any(strikes) {
+            set.p.fill(Vector::zeros());
+        }
     }
 
     /// Expansion after the compression kept in `compression`. A contact either gets the impulse of

@@ -23,7 +23,7 @@ const STEPS_TO_GO_ON: f64 = 10_000.0;
 /// Smallest error that can be requested.
 const LEAST_ACCURACY: f64 = 1e-9;
 
-/// With up to this many blocks their impacts are located one by one.
+/// With up to this many blocks that aren't fixed their impacts are located one by one.
 const FEW_BLOCKS: usize = 8;
 
 /// Most bytes of the tables of a run.
@@ -214,14 +214,15 @@ impl Resolver<'_, '_> {
     }
 
     /// The scheme for `auto`: the most accurate one (`docs/schemes.md`), unless keys of another are
-    /// given. With many blocks there are too many impacts in a step to locate, and on held beams
+    /// given. With many blocks that move there are too many impacts in a step to locate, and on held beams
     /// locating them has been measured in one scene only; without blocks all are equivalent.
     fn automatic_scheme(&self, blocks: usize, beams: &[Option<BeamScene>]) -> SchemeName {
         let held = beams.iter().flatten().any(|beam| beam.spec.axial == teeter_beam::Axial::Held);
         let own = ["time.theta", "time.gap_tolerance", "time.activation_gamma"];
+        let moving = (0..blocks).filter(|&block| !self.is_fixed(SupportingBody::Block(block))).count();
         if blocks == 0 || own.iter().any(|key| self.doc.is_given(key)) {
             SchemeName::MoreauJean
-        } else if held || blocks > FEW_BLOCKS {
+        } else if held || moving > FEW_BLOCKS {
             SchemeName::MoreauJeanClosed
         } else {
             SchemeName::MoreauJeanLocated

@@ -334,3 +334,16 @@ fn a_crowd_on_a_beam_with_a_static_start_is_refused_with_its_remedy() {
     assert!(told.contains("only with up to 400") && told.contains("start undeformed"), "{told}");
     assert!(on_beam("undeformed").is_ok());
 }
+
+/// Stones that jam between two walls, by Poisson's law at a large friction: their impulses against each other do nothing, and were 1 + e
+/// times as large after each blow, until the rounding of 1e17 N s threw the stones away.
+#[test]
+fn a_jam_is_not_blown_up_by_what_is_given_back() {
+    let resolved = loaded(include_str!("jam.toml"));
+    let mut simulation = Simulation::new(&resolved.scene).unwrap();
+    assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+    let ledger = &simulation.state.ledger;
+    assert!(ledger.relative_residual() < 1e-13, "{:e} of the energy unexplained", ledger.relative_residual());
+    let gain = ledger.positive_contact_work.largest;
+    assert!(gain <= 1e-12 * ledger.scale, "contacts gave {gain:e} J in a step, of {:e} J", ledger.scale);
+}

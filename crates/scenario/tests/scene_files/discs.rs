@@ -1,6 +1,9 @@
 //! Discs on blocks: the time at which one comes to the corner at the end of a side.
 
 use super::located::{pose, run};
+use std::ops::ControlFlow;
+use teeter_integrator::{Ended, Model, Observer, ObserverError, State, StepReport};
+use teeter_scenario::simulation::Simulation;
 
 /// A disc slides off the end of a block that slides under it the other way. At the corner the curvature of what it slides on jumps; it is
 /// so fast that it flies on from there. The motion has a closed form, of constant accelerations up to the corner.
@@ -28,5 +31,46 @@ fn a_disc_lets_go_at_the_corner_in_time() {
             let [x, ..] = pose(&simulation, name);
             assert!((x - right).abs() < 5e-8, "{step}: {name} at {x} instead of {right}");
         }
+    }
+}
+
+/// The largest height of the only block that moves, m.
+struct Highest(f64);
+
+impl Observer<2> for Highest {
+    fn observe(
+        &mut self,
+        _: &Model<2>,
+        _: &StepReport<'_, 2>,
+        state: &State,
+    ) -> Result<ControlFlow<()>, ObserverError> {
+        self.0 = self.0.max(state.q[1]);
+        Ok(ControlFlow::Continue(()))
+    }
+}
+
+/// A disc rolls over forty blocks that lie flush, each of which it first meets at its corner: no impact throws it up, whatever the scheme.
+#[test]
+fn a_disc_rolls_over_the_joints_of_a_floor() {
+    let scene = |scheme: &str| {
+        format!(
+            "[time]\nend = '1.2 s'\nstep = '1 ms'\nscheme = '{scheme}'\n\
+             [block.k]\ndensity = '2000 kg/m^3'\nwidth = '0.25 m'\nheight = '0.1 m'\ndepth = '1 m'\nposition = ['0 m', '-0.05 m']\n\
+             fixed = true\nrepeat = {{ count = 40, shift = ['0.25 m', '0 m'] }}\n\
+             [block.s]\ndensity = '1000 kg/m^3'\nradius = '0.1 m'\ndepth = '0.1 m'\nposition = ['0.1 m', '0.1 m']\n\
+             velocity = ['4 m/s', '0 m/s']\nspin = '-40 rad/s'\n\
+             [contact.c]\nbetween = ['*', '*']\nfriction = 0.3\nrestitution = 0\n"
+        )
+    };
+    for (scheme, accuracy) in [("auto", 2e-6), ("moreau-jean-closed", 5e-4), ("moreau-jean-projected", 5e-4)] {
+        let resolved = teeter_scenario::load(scene(scheme).as_bytes(), "floor", "floor", &[]).unwrap();
+        let mut simulation = Simulation::new(&resolved.scene).unwrap();
+        // Fixed blocks don't count where the scheme is chosen.
+        assert_eq!(scheme == "auto", simulation.scheme() == "moreau-jean-located");
+        let mut highest = Highest(0.0);
+        assert_eq!(simulation.run(&mut [&mut highest]).unwrap(), Ended::Complete);
+        let [x, ..] = pose(&simulation, "s");
+        assert!((x - 4.9).abs() < accuracy, "{scheme}: {x}");
+        assert!(highest.0 < 0.1 + 1e-6, "{scheme}: {}", highest.0);
     }
 }

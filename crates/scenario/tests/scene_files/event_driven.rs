@@ -474,3 +474,22 @@ fn energy_is_accounted_for_where_crests_under_a_base_change() {
     assert!(tally.unlocated_steps > 0, "no crest changed: the scene doesn't test it any more");
     assert!(ledger.relative_residual() < 1e-10, "{:e} unexplained", ledger.relative_residual());
 }
+
+/// Two bodies touch and part within a millisecond, by 11 µm, by another contact than the one that approaches at the step's start.
+#[test]
+fn a_touch_between_two_contacts_of_a_pair_is_not_missed() {
+    let scene = "[time]\nend = '0.35 s'\nstep = '1 ms'\n[ground]\n\
+        [block.p0]\ndensity = '1000 kg/m^3'\nshape = { kind = 'regular', sides = 8, radius = '0.05540368995913112 m' }\n\
+        depth = '0.1 m'\nposition = ['-0.03085931357343838 m', '0.2 m']\nangle = '-48.65893009898997 deg'\n\
+        velocity = ['-0.41908789948044145 m/s', '0 m/s']\n\
+        [block.p1]\ndensity = '1000 kg/m^3'\n\
+        shape = { kind = 'stadium', length = '0.0426234209100958 m', radius = '0.03422364992705581 m' }\n\
+        depth = '0.1 m'\nposition = ['-0.020562179403991465 m', '0.42000000000000004 m']\n\
+        angle = '-62.08686448323366 deg'\nvelocity = ['-0.41534956598352446 m/s', '0 m/s']\n\
+        [contact.f]\nbetween = ['*', 'ground']\nfriction = 0.2\nrestitution = 0.4\n\
+        [contact.s]\nbetween = ['*', '*']\nfriction = 0.2\nrestitution = 0.4\n";
+    for step in ["1 ms", "250 us"] {
+        let phi = run(scene, step).state.q[2];
+        assert!((phi - 0.023_379).abs() < 1e-6, "{step}: {phi}");
+    }
+}
