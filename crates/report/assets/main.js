@@ -381,7 +381,7 @@
     const parts = [];
     if (how.value === "arrows" && forces.points.length) parts.push("Green arrows: the contact's force on the block, mean since the sample before, without impacts.");
     if (how.value === "network") {
-      parts.push(`Green lines: contact forces, from centre to centre through the centre of pressure, means since the picture before; widest: ${withPrefix(chains.usual, "N")} or more.`);
+      parts.push(`Green lines: contact forces, from centre to centre through the centre of pressure, straight through what two opposed forces hold, means since the picture before; widest: ${withPrefix(chains.usual, "N")} or more.`);
     }
     if (data.loads.length) parts.push("Purple arrows: loads.");
     if (data.impacts.length) {
