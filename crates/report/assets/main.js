@@ -309,13 +309,18 @@
   });
   byId("view-all").disabled = true;
   byId("save-picture").addEventListener("click", () =>
-    savePicture(scene.root, `${document.title.replace(/[^\p{L}\p{N}]+/gu, "-")}-${times[frame].toFixed(decimals)}s.svg`));
+    savePicture(scene.root, `${document.title.replace(/[^\p{L}\p{N}]+/gu, "-")}-${times[frame].toFixed(decimals)}s.svg`, caption()));
 
   /** A place of the pointer in the picture's own units. */
   const inPicture = (event) => {
     const box = scene.root.getBoundingClientRect();
     const size = scene.root.viewBox.baseVal;
     return [((event.clientX - box.left) * size.width) / box.width, ((event.clientY - box.top) * size.height) / box.height];
+  };
+  /** What a picture that is saved says of itself. */
+  const caption = () => {
+    const exaggerated = factors[Number(exaggeration.value)];
+    return byId("time-readout").textContent + (scenery.beams.length && exaggerated !== 1 ? `, deflections × ${exaggerated}` : "");
   };
   scene.root.addEventListener("wheel", (event) => {
     // Further out than all there is nothing: the page scrolls.
