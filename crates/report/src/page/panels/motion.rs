@@ -1,13 +1,14 @@
 //! Plots of how blocks, beams, ground and supports move.
 
-use super::{Curves, Line, Measure, Panels, Place, Portrait, PortraitLine, Source, TimePanel};
+use super::{Curves, Line, Measure, Panels, Place, Portrait, PortraitLine, Source, TimePanel, coincident};
 use crate::driven::Driven;
 use crate::page::content::{ROUNDING, holds, largest, travel};
 use crate::page::orbit::Point;
 use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, PageRecorder, coordinate_in};
-use crate::page::scenery::FREE;
+use crate::page::scenery::{BeamDrawn, FREE};
 use crate::{shortest, with_digits};
 use std::collections::BTreeSet;
+use std::f64::consts::PI;
 use std::ops::Range;
 
 /// A coordinate of a block.
@@ -331,6 +332,7 @@ impl Panels {
                     x: values(1, factors[0]),
                     v: values(2, factors[1]),
                     strong,
+                    over: 0,
                 }
             };
             let coordinate = &COORDINATES[c];
@@ -344,6 +346,13 @@ impl Panels {
             let tops = orbits.iter().filter(|_| c == PHI).filter_map(near);
             let guides = guides(tops.flatten(), factors[0]);
             let on = from_ground(recorder, &self.curves, c);
+            let strong = what_is_strong(orbits.iter().map(|(_, points)| (strong(points), points.len())));
+            let mut lines: Vec<PortraitLine> = orbits.into_iter().map(line).collect();
+            let coincide = match coincident::tell_apart(&mut lines) {
+                0 => None,
+                count => Some(format!("{count} curves coincide, wholly or in part")),
+            };
+            let notes: Vec<String> = strong.into_iter().chain(coincide).collect();
             let portrait = Portrait {
                 id: ["phase_x", "phase_y", "phase"][c],
                 title: format!("Phase portrait: {} over {}", coordinate.velocity_symbol, coordinate.symbol),
@@ -353,8 +362,8 @@ impl Panels {
                 y_unit: format!("{}/s", units[1]),
                 least: if c == PHI { [4e-5 * factors[0], 2e-3] } else { factors.map(|factor| 1e-4 * reach * factor) },
                 guides,
-                note: what_is_strong(orbits.iter().map(|(_, points)| (strong(points), points.len()))),
-                lines: orbits.into_iter().map(line).collect(),
+                note: (!notes.is_empty()).then(|| notes.join("; ")),
+                lines,
             };
             self.portraits.push(portrait);
         }
