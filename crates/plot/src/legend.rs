@@ -302,11 +302,15 @@ pub(crate) fn area_style(number: usize, theme: Theme) -> String {
 /// so that overlapping marks remain visible; faint ones are pale.
 pub(crate) fn mark_style(number: usize, hollow: bool, faint: bool, theme: Theme) -> String {
     let colour = Colour::Series(number).value(theme);
-    let pale = if faint { " stroke-opacity=\".5\" stroke-width=\".8\"" } else { "" };
+    let pale = match (faint, hollow) {
+        (false, _) => "",
+        (true, true) => " stroke-opacity=\".5\" stroke-width=\".8\"",
+        (true, false) => " fill-opacity=\".3\"",
+    };
     if hollow {
         format!("fill=\"none\" stroke=\"{colour}\"{pale}")
     } else {
-        format!("fill=\"{colour}\" stroke=\"{}\" stroke-width=\".4\"", Colour::Paper.value(theme))
+        format!("fill=\"{colour}\" stroke=\"{}\" stroke-width=\".4\"{pale}", Colour::Paper.value(theme))
     }
 }
 
