@@ -4,11 +4,12 @@
 //! It is a weighted mean about each time, with the weights of a windowed sinc: what vibrates slower than the period told stays as large as it
 //! is, what vibrates faster goes. A mean of equal weights flattens a vibration of twice its window to 64 %, and lets some that are faster through.
 //!
-//! No mean reaches across an impact: the force would change before what changes it.
+//! No mean reaches across an impact, or another jolt: the force would change before what changes it.
 
 mod weights;
 
 use super::curves::{Curves, ForceCurve};
+use super::jolts::Jolts;
 use crate::with_digits;
 use weights::Weights;
 
@@ -43,30 +44,32 @@ fn rounded_down(x: f64) -> f64 {
 pub(super) struct Filter {
     /// The border between the fast vibrations and the slow ones, s.
     period: f64,
-    /// The borders of buckets before which a mean ends, and after which another begins: before the buckets with impacts.
+    /// The borders of buckets before which a mean ends, and after which another begins: before the buckets with jolts.
     cuts: Vec<usize>,
-    /// Whether impacts follow each other within a period, so that means reach across all but the first of them.
+    /// Whether jolts follow each other within a period, so that means reach across all but the first of them.
     reaches_across: bool,
+    /// What the jolts are.
+    what: &'static str,
 }
 
 impl Filter {
-    /// A filter for quantities with these means over the buckets, in a run with impacts at these times (s, in ascending order): what vibrates slower than the
+    /// A filter for quantities with these means over the buckets, in a run with these jolts: what vibrates slower than the
     /// longest period stays, or than the next shorter one where vibrations lie about the longest, of which they would lose a part.
-    pub(super) fn of(curves: &Curves, impacts: &[f64], quantities: &[Vec<f64>]) -> Self {
+    pub(super) fn of(curves: &Curves, jolts: &Jolts, quantities: &[Vec<f64>]) -> Self {
         let (longest, borders) = (longest(curves), curves.borders());
-        let filter = Self::with(longest, &borders, impacts);
+        let filter = Self::with(longest, &borders, jolts);
         if !(longest > 0.0) || !is_long(&borders) {
             return filter;
         }
-        let shorter = Self::with(rounded_down(0.6 * longest), &borders, impacts);
+        let shorter = Self::with(rounded_down(0.6 * longest), &borders, jolts);
         let of_longest = filter.between(&borders, quantities);
         let is_between = of_longest > BETWEEN && 2.0 * shorter.between(&borders, quantities) < of_longest;
         if is_between { shorter } else { filter }
     }
 
-    fn with(period: f64, borders: &[f64], impacts: &[f64]) -> Self {
-        let mut filter = Self { period, cuts: Vec::new(), reaches_across: false };
-        for t in impacts {
+    fn with(period: f64, borders: &[f64], jolts: &Jolts) -> Self {
+        let mut filter = Self { period, cuts: Vec::new(), reaches_across: false, what: jolts.what };
+        for t in &jolts.times {
             let bucket = borders.partition_point(|border| border < t).saturating_sub(1);
             match filter.cuts.last().copied() {
                 Some(before) if before == bucket => {}
@@ -93,24 +96,24 @@ impl Filter {
         if all > 0.0 { (taken / all).sqrt() } else { 0.0 }
     }
 
-    /// A stretch, given by the borders at its ends, in parts between which impacts lie.
+    /// A stretch, given by the borders at its ends, in parts between which jolts lie.
     fn stretches(&self, [first, last]: [usize; 2]) -> Vec<[usize; 2]> {
         let inner = self.cuts.iter().copied().filter(|cut| (first + 1..last).contains(cut));
         let ends: Vec<usize> = std::iter::once(first).chain(inner).chain([last]).collect();
         ends.windows(2).map(|ends| [ends[0], ends[1]]).collect()
     }
 
-    /// The period as it is told, with how far means reach where there are impacts.
+    /// The period as it is told, with how far means reach where there are jolts.
     pub(super) fn told(&self) -> String {
         let period = with_digits(self.period, "s", 3);
         match (self.cuts.is_empty(), self.reaches_across) {
             (true, _) => period,
-            (_, false) => format!("{period}, not across impacts"),
-            _ => format!("{period}, not across impacts further apart than that"),
+            (_, false) => format!("{period}, not across {}", self.what),
+            _ => format!("{period}, not across {} further apart than that", self.what),
         }
     }
 
-    /// The normal force at the borders of the buckets without fast vibrations, N: from what lies between impacts and in the
+    /// The normal force at the borders of the buckets without fast vibrations, N: from what lies between jolts and in the
     /// stretch in which the contact touches. `None` where the raw values are as smooth.
     pub(super) fn normal(&self, curves: &Curves, forces: &ForceCurve) -> Option<Vec<f64>> {
         let borders = curves.borders();
@@ -160,7 +163,7 @@ impl Filter {
         (far as f64 > LEAST * own.len() as f64 && crossings as f64 >= periods).then_some(means)
     }
 
-    /// The largest value of a quantity that rings within half of the period on either side, but not across impacts, at the borders of the buckets: what stays of one without a
+    /// The largest value of a quantity that rings within half of the period on either side, but not across jolts, at the borders of the buckets: what stays of one without a
     /// sign, as a stress, of which a mean would say nothing. `None` unless it rings.
     pub(super) fn largest_about(&self, curves: &Curves, column: usize) -> Option<Vec<f64>> {
         self.ringing(curves, column)?;
@@ -220,14 +223,14 @@ mod tests {
 
     /// Without impacts, and with the longest period.
     fn plain(curves: &Curves) -> Filter {
-        Filter::with(longest(curves), &curves.borders(), &[])
+        Filter::with(longest(curves), &curves.borders(), &Jolts::default())
     }
 
     #[test]
     fn the_mean_is_the_force_that_carries() {
         // 3.1 N with 1 N of ringing at 400 Hz.
         let (curves, forces) = run(|t| 3.1 + (2.0 * std::f64::consts::PI * 400.0 * t).sin());
-        let filter = Filter::of(&curves, &[], std::slice::from_ref(&forces.normal));
+        let filter = Filter::of(&curves, &Jolts::default(), std::slice::from_ref(&forces.normal));
         assert!((filter.period - 0.02).abs() < 1e-12, "{filter:?}");
         let means = filter.normal(&curves, &forces).unwrap();
         // To the ends of the run.
@@ -295,7 +298,7 @@ mod tests {
         let moment = |t: f64| 9.0 + 5.0 * (tau * slow * t).sin() + 4.0 * (tau * 400.0 * t).sin();
         let mut curves = Curves::new(10_000, 0.0, vec![moment(0.0)], 0);
         (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[moment(t)]));
-        let filter = Filter::of(&curves, &[], &[curves.means(0)]);
+        let filter = Filter::of(&curves, &Jolts::default(), &[curves.means(0)]);
         let means = filter.ringing(&curves, 0).unwrap();
         let inner = &means[means.len() / 8..means.len() * 7 / 8];
         let (low, high) = inner.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
@@ -320,7 +323,7 @@ mod tests {
         };
         let mut curves = Curves::new(10_000, 0.0, vec![reaction(0.0)], 0);
         (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[reaction(t)]));
-        assert!(Filter::of(&curves, &[], &[curves.means(0)]).ringing(&curves, 0).is_some());
+        assert!(Filter::of(&curves, &Jolts::default(), &[curves.means(0)]).ringing(&curves, 0).is_some());
     }
 
     #[test]
@@ -338,6 +341,10 @@ mod tests {
         assert_eq!(plain(&curves).normal(&curves, &forces), None);
     }
 
+    fn jolts(impacts: &[f64]) -> Jolts {
+        Jolts { times: impacts.to_vec(), what: "impacts" }
+    }
+
     /// A beam without load that rings from impacts on, by as much as `force` says, in 1 s.
     fn struck(impacts: &[f64], force: impl Fn(f64) -> f64) -> Curves {
         let raw = |t: f64| if impacts.iter().any(|impact| t >= impact - 1e-9) { force(t) } else { 0.0 };
@@ -352,7 +359,7 @@ mod tests {
         let ringing = |t: f64| 60.0 + 100.0 * (tau * 400.0 * t).sin() + 20.0 * (tau * 20.0 * t).cos();
         let impacts = [0.2165, 0.6];
         let curves = struck(&impacts, ringing);
-        let filter = Filter::of(&curves, &impacts, &[curves.means(0)]);
+        let filter = Filter::of(&curves, &jolts(&impacts), &[curves.means(0)]);
         let means = filter.ringing(&curves, 0).unwrap();
         let largest = filter.largest_about(&curves, 0).unwrap();
         for ((t, mean), largest) in curves.borders().into_iter().zip(means).zip(largest) {
@@ -371,7 +378,7 @@ mod tests {
     #[test]
     fn means_reach_across_impacts_that_follow_each_other_closely() {
         let impacts = [0.2, 0.205, 0.21, 0.5];
-        let filter = Filter::of(&struck(&impacts, |_| 1.0), &impacts, &[]);
+        let filter = Filter::of(&struck(&impacts, |_| 1.0), &jolts(&impacts), &[]);
         assert_eq!(filter.cuts.len(), 2);
         assert_eq!(filter.told(), "20 ms, not across impacts further apart than that");
         assert_eq!(plain(&struck(&[], |_| 1.0)).told(), "20 ms");

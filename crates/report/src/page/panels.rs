@@ -3,6 +3,7 @@
 
 use super::content::{LeftOut, ROUNDING, largest};
 use super::curves::{Curves, ForceCurve};
+use super::jolts::Jolts;
 use super::means::Filter;
 use super::recorder::{NUMBERS, PageRecorder};
 use super::redundant::{Redundant, redundant};
@@ -254,7 +255,7 @@ impl Panels {
         let points = |contact: &ContactDrawn| contact.first..contact.first + contact.points.len();
         let forces = ringing().flat_map(|contact| &self.forces[points(contact)]).flatten();
         let normal: Vec<Vec<f64>> = forces.map(|forces| forces.normal.clone()).collect();
-        let filter = Filter::of(&self.curves, &recorder.impacts_that_ring(), &normal);
+        let filter = Filter::of(&self.curves, &Jolts::of(recorder), &normal);
         let mut means = vec![None; self.forces.len()];
         for point in ringing().flat_map(points) {
             means[point] = self.forces[point].as_ref().and_then(|forces| filter.normal(&self.curves, forces));

@@ -483,23 +483,6 @@ impl PageRecorder {
         counts.into_iter().enumerate().map(|(part, count)| (middle(part), count)).collect()
     }
 
-    /// When what beams carry is struck, s: each impact, and of those after the last one that is kept the beginning of each part of the run that has some.
-    pub(crate) fn impacts_that_ring(&self) -> Vec<f64> {
-        let rings = |pair: usize| self.scenery.contacts.get(pair).is_some_and(|contact| contact.rings);
-        let kept = &self.kept.impacts;
-        let mut times: Vec<f64> = kept.iter().filter(|impact| rings(impact.contact)).map(|impact| impact.t).collect();
-        let all_until =
-            if self.kept.impact_count > kept.len() as u64 { kept.last().map_or(0.0, |last| last.t) } else { self.end };
-        for part in 0..PARTS {
-            let begin = part as f64 * self.end / PARTS as f64;
-            let has_some = |(pair, counts): (&usize, &Vec<u32>)| counts[part] > 0 && rings(*pair);
-            if begin >= all_until && self.kept.density.iter().any(has_some) {
-                times.push(begin);
-            }
-        }
-        times
-    }
-
     /// Takes a step in, with the contacts that closed in it.
     pub(crate) fn see_step(&mut self, step: &StepReport<'_, 2>, state: &State, closed: &[Closed]) {
         self.take_row(state);

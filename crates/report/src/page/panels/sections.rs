@@ -2,6 +2,7 @@
 
 use super::{Line, Measure, Panels, Place, TimePanel};
 use crate::page::content::{holds, largest};
+use crate::page::jolts::Jolts;
 use crate::page::means::Filter;
 use crate::page::recorder::PageRecorder;
 use crate::page::scenery::ContactDrawn;
@@ -33,7 +34,7 @@ impl Panels {
         let moment = most(&[Kind::Moment, Kind::ReactionCouple]);
         let force = most(&[Kind::Shear, Kind::AxialForce, Kind::Reaction]).max(moment / span);
         let moment = moment.max(force * span);
-        let impacts = recorder.impacts_that_ring();
+        let jolts = Jolts::of(recorder);
         for (kind, title, of, unit, scale) in [
             (Kind::Moment, "Bending moment M", "bending moment at", "N m", moment),
             (Kind::Shear, "Transverse force V", "transverse force at", "N", force),
@@ -75,7 +76,7 @@ impl Panels {
             } else {
                 drawn.iter().map(|(column, ..)| self.curves.means(*column)).collect()
             };
-            let filter = Filter::of(&self.curves, &impacts, &means);
+            let filter = Filter::of(&self.curves, &jolts, &means);
             let (mut lines, mut over) = (Vec::new(), Vec::new());
             for (column, label, number, _) in drawn {
                 let mean = match kind {
