@@ -12,6 +12,7 @@ import { keyboardWalk, playByKeys, plotsWithoutWords, violations } from "./acces
 import { pageData } from "./columns.mjs";
 import { flatAtFirst, outOfPicture, specksAtFirst, unfoldedOnPaper, unplotted, wrongVerdicts } from "./motion.mjs";
 import { otherLegends } from "./legends.mjs";
+import { leaningApart, wrongSaved } from "./picture.mjs";
 import { overlaps } from "./overlaps.mjs";
 import { plotsDrawn, plotsOfRounding } from "./rounding.mjs";
 
@@ -92,6 +93,8 @@ async function ofRun(page, run, problem, isFirst) {
   (await playByKeys(page)).forEach(problem);
   if (!isFirst) return;
   // What doesn't depend on the window.
+  (await wrongSaved(page)).forEach(problem);
+  (await page.evaluate(leaningApart)).forEach(problem);
   (await flatAtFirst(page, trajectory)).forEach(problem);
   (await page.evaluate(otherLegends)).forEach((text) => problem(`refers to another legend: ${text}`));
   (await page.evaluate(unfoldedOnPaper)).forEach((text) => problem(`unfolds on paper: ${text}`));

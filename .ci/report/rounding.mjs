@@ -54,7 +54,7 @@ export function plotsOfRounding(drawn, data, summary, envelopes) {
   const beamMoment = Math.max(...["moment", "reaction_couple"].map((what) => section[`section-${what}`] ?? 0));
   const force = Math.max(beamForce, span > 0 ? beamMoment / span : 0);
   const moment = Math.max(beamMoment, force * span);
-  const bodies = Object.fromEntries(data.panels.filter(({ id }) => ["x", "y", "phi"].includes(id))
+  const bodies = Object.fromEntries(data.panels.filter(({ id }) => ["x", "y", "phi", "phi_rolling"].includes(id))
     .map(({ id, series }) => [id, series.map(({ index }) => index).join()]));
 
   const overTime = (panel) => {
@@ -62,11 +62,11 @@ export function plotsOfRounding(drawn, data, summary, envelopes) {
     const unit = si(panel.unit);
     const each = (what, scale, measure = largest) =>
       series.forEach(({ label, index, y }) => require(id, `${what} ${label}`, unit * measure(y), scale(index)));
-    if (id === "phi") each("turn", () => 1, travel);
+    if (id === "phi" || id === "phi_rolling") each("turn", () => 1, travel);
     else if (id === "x" || id === "y") each("travel", (block) => reach(scenery.blocks[block]), travel);
-    else if (["vx", "vy", "omega"].includes(id)) {
+    else if (["vx", "vy", "omega", "omega_rolling"].includes(id)) {
       // Drawn with its coordinate, of the same bodies.
-      const coordinate = { vx: "x", vy: "y", omega: "phi" }[id];
+      const coordinate = { vx: "x", vy: "y", omega: "phi", omega_rolling: "phi_rolling" }[id];
       if (bodies[coordinate] !== series.map(({ index }) => index).join()) problems.push(`plot ${id} is of bodies that the plot ${coordinate} doesn't have`);
     } else if (id === "w_mid") each("deflection", () => 1e-3 * Math.min(...scenery.beams.map((beam) => beam.span)));
     else if (/^ground(_v|_a)?(_phi)?$/.test(id)) each("prescribed motion", () => 0);

@@ -200,7 +200,8 @@ impl Figure {
         let (entries, note) = (panel.entries(), panel.note_text());
         let named = self.legend != Legend::Beside && (!entries.is_empty() || !self.headed);
         let bare = !named && note.is_none();
-        let header = if bare { BARE_HEADER } else { HEADER + self.legend.more_height(&entries, note, self.width) };
+        let header =
+            if bare { BARE_HEADER } else { HEADER + self.legend.more_height(&entries, note.as_deref(), self.width) };
         let several = self.panels.iter().filter(|panel| panel.is_plot()).count() > 1;
         let own = panel.own_height_mm().map_or(HEIGHTS[usize::from(several)], |height| UNITS_PER_MM * height);
         let inner = panel.bands_height().unwrap_or(own);

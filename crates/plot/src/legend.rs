@@ -40,10 +40,8 @@ pub fn text_width(text: &str) -> f64 {
 const SYMBOL: f64 = SAMPLE + AFTER_SAMPLE;
 const GAP: f64 = 14.0;
 
-/// Length of a sample of a line, unless its dashes need more.
+/// Length of a sample of a line.
 const SAMPLE: f64 = 14.0;
-/// The longest sample; longer dashes are drawn to a smaller scale.
-const LONGEST_SAMPLE: f64 = 56.0;
 const AFTER_SAMPLE: f64 = 4.0;
 
 /// Row distance above a panel, and beside it.
@@ -92,69 +90,58 @@ impl<'a> Entry<'a> {
         (!series.label().is_empty()).then_some(Self { symbol, name: series.label() })
     }
 
-    /// Draws it with a symbol of this length.
-    fn draw(&self, svg: &mut String, theme: Theme, x: f64, y: f64, sample: f64) {
+    fn draw(&self, svg: &mut String, theme: Theme, x: f64, y: f64) {
         let _ = match self.symbol {
             Symbol::Line { number, dash } => write!(
                 svg,
-                "<path d=\"M{x:.2} {:.2}h{sample}\" {} stroke-width=\"1.6\"/>",
+                "<path d=\"M{x:.2} {:.2}h{SAMPLE}\" {} stroke-width=\"1.6\"/>",
                 y - 3.5,
-                sample_stroke(number, dash, theme, sample)
+                sample_stroke(number, dash, theme)
             ),
             Symbol::Marks { mark, hollow, faint, number } => {
-                let place = mark_path(mark, x + 0.5 * sample, y - 3.5);
+                let place = mark_path(mark, x + 0.5 * SAMPLE, y - 3.5);
                 write!(svg, "<path d=\"{place}\" {}/>", mark_style(number, hollow, faint, theme))
             }
             Symbol::Area(number) => write!(
                 svg,
-                "<rect x=\"{x:.2}\" y=\"{:.2}\" width=\"{sample}\" height=\"8\" {}/>",
+                "<rect x=\"{x:.2}\" y=\"{:.2}\" width=\"{SAMPLE}\" height=\"8\" {}/>",
                 y - 8.0,
                 area_style(number, theme)
             ),
             Symbol::Guide => write!(
                 svg,
-                "<path d=\"M{x:.2} {:.2}h{sample}\" stroke=\"{}\" stroke-dasharray=\"4 3\" stroke-width=\".8\"/>",
+                "<path d=\"M{x:.2} {:.2}h{SAMPLE}\" stroke=\"{}\" stroke-dasharray=\"4 3\" stroke-width=\".8\"/>",
                 y - 3.5,
                 Colour::Guide.value(theme)
             ),
             Symbol::Tick => write!(
                 svg,
                 "<path d=\"M{:.2} {:.2}v6\" stroke=\"{}\" stroke-width=\".8\"/>",
-                x + 0.5 * sample,
+                x + 0.5 * SAMPLE,
                 y - 7.0,
                 Colour::Guide.value(theme)
             ),
             Symbol::Swatch(colour) => write!(
                 svg,
-                "<rect x=\"{x:.2}\" y=\"{:.2}\" width=\"{sample}\" height=\"8\" fill=\"{}\" stroke=\"{}\" stroke-width=\".4\"/>",
+                "<rect x=\"{x:.2}\" y=\"{:.2}\" width=\"{SAMPLE}\" height=\"8\" fill=\"{}\" stroke=\"{}\" stroke-width=\".4\"/>",
                 y - 8.0,
                 colour.value(theme),
                 Colour::Ink.value(theme)
             ),
         };
         let _ =
-            writeln!(svg, "<text x=\"{:.2}\" y=\"{y:.2}\">{}</text>", x + sample + AFTER_SAMPLE, escaped(self.name));
+            writeln!(svg, "<text x=\"{:.2}\" y=\"{y:.2}\">{}</text>", x + SAMPLE + AFTER_SAMPLE, escaped(self.name));
     }
 }
 
-/// The length of all symbols of a legend: one for all, so that names that stand below each other begin at the same place.
-fn sample(entries: &[Entry]) -> f64 {
-    let period = |entry: &Entry| match entry.symbol {
-        Symbol::Line { dash: Dash::Over(lines, most), .. } => over(lines.min(most), most).iter().sum(),
-        _ => 0.0,
-    };
-    entries.iter().map(period).fold(SAMPLE, f64::max).min(LONGEST_SAMPLE)
-}
-
-/// Colour and dash of the sample of a line: of a line on others a whole period, from the middle of a dash to that of the next, as its gap would
-/// not be seen at an end.
-fn sample_stroke(number: usize, dash: Dash, theme: Theme, sample: f64) -> String {
-    let Dash::Over(lines, most) = dash else { return stroke(number, dash, theme) };
-    let [dash, gap] = over(lines.min(most), most);
-    let scale = (sample / (dash + gap)).min(1.0);
-    let [dash, gap] = [dash, gap].map(|length| scale * length);
-    let colour = Colour::Series(number).value(theme);
-    format!("stroke=\"{colour}\" stroke-dasharray=\"{dash} {gap}\" stroke-dashoffset=\"{}\"", 0.5 * dash)
+/// Colour and dash of the sample of a line: of a line on others from the middle of a dash on, as its gap would not be seen at an end.
+fn sample_stroke(number: usize, dash: Dash, theme: Theme) -> String {
+    match dash {
+        Dash::ByNumber => stroke(number, dash, theme),
+        Dash::Over(lines) => {
+            format!("{} stroke-dashoffset=\"{}\"", stroke(number, dash, theme), 0.5 * over(lines)[0])
+        }
+    }
 }
 
 impl Legend {
@@ -162,19 +149,17 @@ impl Legend {
     /// than the figure is wide.
     fn rows(self, entries: &[Entry], note: Option<&str>, across: f64) -> Vec<(usize, f64)> {
         let lines = note_lines(note, across);
-        let sample = sample(entries);
-        let symbol = sample + AFTER_SAMPLE;
         let (mut row, mut x) = (if lines.len() > 1 { lines.len() } else { 0 }, LEFT);
         let noted = note.filter(|_| lines.len() == 1).map_or(0.0, |note| text_width(note) + GAP);
         let place = |entry: &Entry| {
             let right = across - RIGHT - if row == 0 { noted } else { 0.0 };
-            let name = text_width(&fitting(entry.name, across, sample));
-            let full = x + symbol + name > right;
+            let name = text_width(&fitting(entry.name, across));
+            let full = x + SYMBOL + name > right;
             if self == Self::Rows && full && (x > LEFT || noted > 0.0) {
                 (row, x) = (row + 1, LEFT);
             }
             let place = (row, x);
-            x += symbol + name + GAP;
+            x += SYMBOL + name + GAP;
             place
         };
         entries.iter().map(place).collect()
@@ -199,13 +184,12 @@ impl Legend {
             return (0.0, 0.0);
         }
         let widest = entries.iter().map(|entry| text_width(entry.name)).fold(0.0, f64::max);
-        (sample(entries) + AFTER_SAMPLE + widest + RIGHT, ROW_BESIDE * entries.len() as f64)
+        (SYMBOL + widest + RIGHT, ROW_BESIDE * entries.len() as f64)
     }
 
     /// Draws the entries and a note for the panel with this frame.
     pub(crate) fn draw(self, svg: &mut String, theme: Theme, frame: &Frame, entries: &[Entry], note: Option<&str>) {
         let (top, across) = (frame.top, frame.across);
-        let sample = sample(entries);
         let first = top - ABOVE - self.more_height(entries, note, across);
         for (k, line) in note_lines(note, across).iter().enumerate() {
             let _ = writeln!(
@@ -219,13 +203,13 @@ impl Legend {
         }
         if self == Self::Beside {
             for (k, entry) in entries.iter().enumerate() {
-                entry.draw(svg, theme, across, top + 9.0 + ROW_BESIDE * k as f64, sample);
+                entry.draw(svg, theme, across, top + 9.0 + ROW_BESIDE * k as f64);
             }
             return;
         }
         for (entry, (row, x)) in entries.iter().zip(self.rows(entries, note, across)) {
-            let name = fitting(entry.name, across, sample);
-            Entry { symbol: entry.symbol, name: &name }.draw(svg, theme, x, first + ROW * row as f64, sample);
+            let name = fitting(entry.name, across);
+            Entry { symbol: entry.symbol, name: &name }.draw(svg, theme, x, first + ROW * row as f64);
         }
     }
 }
@@ -274,8 +258,8 @@ fn filled(words: &[String], widest: f64) -> Vec<String> {
 }
 
 /// A name as it has room in a row of its own: of one that is longer, its beginning and its end.
-fn fitting(name: &str, across: f64, sample: f64) -> Cow<'_, str> {
-    let room = ((across - RIGHT - LEFT - sample - AFTER_SAMPLE) / text_width("n")).max(5.0) as usize;
+fn fitting(name: &str, across: f64) -> Cow<'_, str> {
+    let room = ((across - RIGHT - LEFT - SYMBOL) / text_width("n")).max(5.0) as usize;
     let letters: Vec<char> = name.chars().collect();
     if letters.len() <= room {
         return Cow::Borrowed(name);
@@ -285,18 +269,11 @@ fn fitting(name: &str, across: f64, sample: f64) -> Cow<'_, str> {
     Cow::Owned(letters[..head].iter().chain(&['…']).chain(end).collect())
 }
 
-/// Up to so many lines below, each later one has dashes half as long as those of the one below.
-const HALVED: u8 = 3;
-
-/// Dash and gap of a line that lies on others, which show in its gaps: all have the same period. Where a line lies on more than [`HALVED`] others (`most`),
-/// each shows as much as any other.
-fn over(lines: u8, most: u8) -> [f64; 2] {
-    if most <= HALVED {
-        let dash = 8.0 / f64::from(1_u32 << lines);
-        return [dash, 8.0 - dash];
-    }
-    let [lines, most] = [lines, most].map(f64::from);
-    [4.0 * (most + 1.0 - lines), 4.0 * lines]
+/// Dash and gap of a line that lies on others, which show in its gaps: all have the same period, and each later one has dashes half as long as those of the
+/// one below.
+fn over(lines: u8) -> [f64; 2] {
+    let dash = 8.0 / f64::from(1_u32 << lines);
+    [dash, 8.0 - dash]
 }
 
 /// Dash patterns that distinguish lines of the same colour.
@@ -307,8 +284,8 @@ pub(crate) fn stroke(number: usize, dash: Dash, theme: Theme) -> String {
     let by_number = DASHES[number / crate::theme::SERIES_COLOURS % DASHES.len()];
     let dash = match dash {
         Dash::ByNumber => by_number.to_owned(),
-        Dash::Over(lines, most) => {
-            let [dash, gap] = over(lines.min(most), most);
+        Dash::Over(lines) => {
+            let [dash, gap] = over(lines);
             format!("{dash} {gap}")
         }
     };
@@ -325,11 +302,15 @@ pub(crate) fn area_style(number: usize, theme: Theme) -> String {
 /// so that overlapping marks remain visible; faint ones are pale.
 pub(crate) fn mark_style(number: usize, hollow: bool, faint: bool, theme: Theme) -> String {
     let colour = Colour::Series(number).value(theme);
-    let pale = if faint { " stroke-opacity=\".5\" stroke-width=\".8\"" } else { "" };
+    let pale = match (faint, hollow) {
+        (false, _) => "",
+        (true, true) => " stroke-opacity=\".5\" stroke-width=\".8\"",
+        (true, false) => " fill-opacity=\".3\"",
+    };
     if hollow {
         format!("fill=\"none\" stroke=\"{colour}\"{pale}")
     } else {
-        format!("fill=\"{colour}\" stroke=\"{}\" stroke-width=\".4\"", Colour::Paper.value(theme))
+        format!("fill=\"{colour}\" stroke=\"{}\" stroke-width=\".4\"{pale}", Colour::Paper.value(theme))
     }
 }
 
@@ -352,27 +333,10 @@ mod tests {
     }
 
     #[test]
-    fn each_of_many_lines_on_each_other_shows() {
-        assert_eq!([1, 2, 3].map(|lines| over(lines, 3)), [[4.0, 4.0], [2.0, 6.0], [1.0, 7.0]]);
-        // Of seven, what the next one leaves free of each is four units long.
-        let dashes = [1, 2, 3, 4, 5, 6].map(|lines| over(lines, 6));
-        assert_eq!(dashes, [[24.0, 4.0], [20.0, 8.0], [16.0, 12.0], [12.0, 16.0], [8.0, 20.0], [4.0, 24.0]]);
-    }
-
-    #[test]
-    fn a_sample_holds_a_whole_period_and_all_names_begin_alike() {
-        let on = |lines, most| Entry { symbol: Symbol::Line { number: 1, dash: Dash::Over(lines, most) }, name: "b" };
-        assert_eq!((sample(&entries(&["a"])), sample(&[on(1, 3)])), (SAMPLE, SAMPLE));
-        let several = [entries(&["a"])[0], on(1, 6), on(2, 6)];
-        assert_eq!((sample(&several), sample(&[on(1, 200)])), (28.0, LONGEST_SAMPLE));
-        let drawn = several.map(|entry| {
-            let mut svg = String::new();
-            entry.draw(&mut svg, Theme::default(), 10.0, 20.0, sample(&several));
-            svg
-        });
-        assert!(drawn.iter().all(|svg| svg.contains("<text x=\"42.00\"")), "{drawn:?}");
-        assert!(drawn[1].contains("stroke-dasharray=\"24 4\" stroke-dashoffset=\"12\""), "{drawn:?}");
-        assert!(drawn[2].contains("h28\"") && drawn[2].contains("stroke-dasharray=\"20 8\""), "{drawn:?}");
+    fn each_line_on_others_has_dashes_half_as_long() {
+        assert_eq!([1, 2, 3].map(over), [[4.0, 4.0], [2.0, 6.0], [1.0, 7.0]]);
+        // A sample holds a whole period.
+        assert!(over(3).iter().sum::<f64>() <= SAMPLE);
     }
 
     #[test]
@@ -422,13 +386,13 @@ mod tests {
     #[test]
     fn a_name_too_long_for_the_figure_keeps_its_beginning_and_its_end() {
         let name = "the-left-column-of-the-southern-portal: bottom left corner on the second course";
-        let shown = fitting(name, 4.0 * 84.0, SAMPLE);
+        let shown = fitting(name, 4.0 * 84.0);
         assert!(text_width(&shown) <= 4.0 * 84.0 - LEFT - RIGHT - SYMBOL, "{shown}");
         assert!(
             shown.starts_with("the-left-column") && shown.ends_with("second course") && shown.contains('…'),
             "{shown}"
         );
-        assert_eq!(fitting("short", 4.0 * 84.0, SAMPLE), "short");
+        assert_eq!(fitting("short", 4.0 * 84.0), "short");
     }
 
     #[test]

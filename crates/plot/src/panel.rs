@@ -30,6 +30,8 @@ impl Band {
 pub struct Panel {
     content: Content,
     note: Option<String>,
+    /// How many lines lie on each other that dashes can't tell apart.
+    too_many: usize,
     /// Places of ticks, and their length as a part of the longest.
     ticks_at: Vec<(f64, f64)>,
     tick_name: Option<String>,
@@ -92,6 +94,7 @@ impl Panel {
         Self {
             content,
             note: None,
+            too_many: 0,
             ticks_at: Vec::new(),
             tick_name: None,
             guides: Vec::new(),
@@ -115,12 +118,13 @@ impl Panel {
     }
 
     /// Dashes lines that lie on an earlier one over the whole panel, so that both are seen: within 1 %
-    /// of the axis, a line's width. Of the series added so far.
+    /// of the axis, a line's width. Of the series added so far. Where more lie on each other than dashes can show, the note
+    /// says how many.
     #[must_use]
     pub fn telling_apart(mut self) -> Self {
         if let Content::Plot { y, series } = &mut self.content {
             let (low, high) = y.ends();
-            Series::tell_apart(series, 0.01 * (high - low));
+            self.too_many = Series::tell_apart(series, 0.01 * (high - low));
         }
         self
     }
@@ -229,8 +233,10 @@ impl Panel {
         }
     }
 
-    pub(crate) fn note_text(&self) -> Option<&str> {
-        self.note.as_deref()
+    pub(crate) fn note_text(&self) -> Option<String> {
+        let coincide = (self.too_many > 0).then(|| format!("{} curves coincide, wholly or in part", self.too_many));
+        let parts: Vec<String> = [self.note.clone(), coincide].into_iter().flatten().collect();
+        (!parts.is_empty()).then(|| parts.join("; "))
     }
 
     /// The entries of the legend.
@@ -254,7 +260,7 @@ impl Panel {
     }
 
     pub(crate) fn draw(&self, svg: &mut String, frame: &Frame, id: &str, legend: Legend, theme: Theme) {
-        legend.draw(svg, theme, frame, &self.entries(), self.note_text());
+        legend.draw(svg, theme, frame, &self.entries(), self.note_text().as_deref());
         match &self.content {
             Content::Plot { y, series } => self.draw_plot(svg, frame, id, theme, y, series),
             Content::Bands { bands, .. } => draw_bands(svg, frame, theme, bands),

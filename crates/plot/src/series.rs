@@ -20,8 +20,8 @@ pub struct Series {
 pub(crate) enum Dash {
     /// Its number.
     ByNumber,
-    /// It lies on another line, or on so many (the first number) that lie on each other; the most that any line of the panel does (the second).
-    Over(u8, u8),
+    /// It lies on another line, or on so many that lie on each other.
+    Over(u8),
 }
 
 /// How a series is drawn.
@@ -131,42 +131,44 @@ impl Series {
         self
     }
 
+    /// Whether it is drawn thin and pale.
+    #[must_use]
+    pub fn is_faint(&self) -> bool {
+        self.faint
+    }
+
     /// Whether a line stays within `tolerance` (in y) of another one at all of its points, which are
-    /// at the same x, or hides it at half of them: there within the tolerance, and away from 0.
+    /// at the same x, or hides it at half of those that are away from 0, if these are more than a few.
     fn lies_on(&self, other: &Self, tolerance: f64) -> bool {
         let pairs = || self.points.iter().zip(&other.points);
         let near = |a: &(f64, f64), b: &(f64, f64)| (a.1 - b.1).abs() <= tolerance;
-        let hidden = || pairs().filter(|(a, b)| near(a, b) && a.1.abs() > tolerance).count();
+        let away = || pairs().filter(|(a, _)| a.1.abs() > tolerance);
+        let hidden = || away().filter(|(a, b)| near(a, b)).count();
+        let hides = || 20 * away().count() > self.points.len() && 2 * hidden() > away().count();
         self.drawn == Drawn::Line
             && other.drawn == Drawn::Line
             && self.faint == other.faint
             && self.points.len() == other.points.len()
             && pairs().all(|(a, b)| a.0 == b.0)
-            && (pairs().all(|(a, b)| near(a, b)) || 2 * hidden() > self.points.len())
+            && (pairs().all(|(a, b)| near(a, b)) || hides())
+    }
+
+    /// Dashes a line that lies on so many others that lie on each other, at most [`MOST_OVER`]: they show in its gaps. Panels
+    /// [find such lines](crate::Panel::telling_apart) themselves where these have their points at the same x.
+    #[must_use]
+    pub fn over(mut self, lines: u8) -> Self {
+        self.dash = if lines == 0 { Dash::ByNumber } else { Dash::Over(lines.min(MOST_OVER)) };
+        self
     }
 
     /// Dashes each line that lies within `tolerance` of an earlier one, or does so for half of its length away from 0: that one shows in the
-    /// gaps. Of several on each other each later
-    /// one has shorter dashes.
-    pub(crate) fn tell_apart(lines: &mut [Self], tolerance: f64) {
-        for k in 1..lines.len() {
-            let (before, rest) = lines.split_at_mut(k);
-            let below =
-                before.iter().filter(|earlier| rest[0].lies_on(earlier, tolerance)).map(|earlier| match earlier.dash {
-                    Dash::ByNumber => 0,
-                    Dash::Over(lines, _) => lines,
-                });
-            if let Some(lines) = below.max() {
-                rest[0].dash = Dash::Over(lines.saturating_add(1), 0);
-            }
+    /// gaps. Of several on each other each later one has shorter dashes. Returns how many lie on each other where these are too many for that.
+    pub(crate) fn tell_apart(lines: &mut [Self], tolerance: f64) -> usize {
+        let found = coincident(lines.len(), |k, earlier| lines[k].lies_on(&lines[earlier], tolerance));
+        for (line, over) in lines.iter_mut().zip(&found.over).filter(|(_, over)| **over > 0) {
+            line.dash = Dash::Over(*over);
         }
-        let lines_below = |line: &Self| if let Dash::Over(lines, _) = line.dash { lines } else { 0 };
-        let most = lines.iter().map(lines_below).max().unwrap_or(0);
-        for line in lines {
-            if let Dash::Over(_, of) = &mut line.dash {
-                *of = most;
-            }
-        }
+        found.too_many
     }
 
     /// The name in the legend.
@@ -187,6 +189,52 @@ impl Series {
     }
 }
 
+/// On so many others a line may lie for each to show in the gaps of those above it.
+pub const MOST_OVER: u8 = 3;
+
+/// Which lines lie on others.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Coincident {
+    /// On how many others that lie on each other each line lies; 0 too where these are more than [`MOST_OVER`], whose dashes would be
+    /// too short to be seen.
+    pub over: Vec<u8>,
+    /// How many lines lie on each other where these are that many; 0 if nowhere.
+    pub too_many: usize,
+}
+
+/// Finds out of `count` lines, drawn in their order, those that lie on others, where the first number of `lies_on` is that of the later one.
+///
+/// ```
+/// // Line 1 lies on line 0.
+/// let found = teeter_plot::coincident(3, |line, earlier| (line, earlier) == (1, 0));
+/// assert_eq!((found.over, found.too_many), (vec![0, 1, 0], 0));
+/// ```
+#[must_use]
+pub fn coincident(count: usize, lies_on: impl Fn(usize, usize) -> bool) -> Coincident {
+    let mut over = vec![0_usize; count];
+    // The lines of each group have the number of its first one.
+    let mut group: Vec<usize> = (0..count).collect();
+    for line in 0..count {
+        for earlier in (0..line).filter(|earlier| lies_on(line, *earlier)) {
+            over[line] = over[line].max(over[earlier] + 1);
+            let (from, to) = (group[line].max(group[earlier]), group[line].min(group[earlier]));
+            group.iter_mut().filter(|number| **number == from).for_each(|number| *number = to);
+        }
+    }
+    let mut too_many = 0;
+    for number in 0..count {
+        let own = || (0..count).filter(|line| group[*line] == number);
+        if own().any(|line| over[line] > usize::from(MOST_OVER)) {
+            too_many = too_many.max(own().count());
+            let lines: Vec<usize> = own().collect();
+            lines.into_iter().for_each(|line| over[line] = 0);
+        }
+    }
+    let over = over.into_iter().map(|lines| u8::try_from(lines).unwrap_or(MOST_OVER));
+    Coincident { over: over.collect(), too_many }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -195,10 +243,30 @@ mod tests {
     fn only_a_line_on_an_earlier_one_is_dashed() {
         let line = |shift: f64| Series::line("", (0..9).map(|k| (f64::from(k), f64::from(k * k) + shift)));
         let mut lines = [line(0.0), line(0.2), line(0.4), line(9.0)];
-        Series::tell_apart(&mut lines, 0.3);
+        let _ = Series::tell_apart(&mut lines, 0.3);
         // The third lies on the second alone, which has dashes already.
-        let dashes = [Dash::ByNumber, Dash::Over(1, 2), Dash::Over(2, 2), Dash::ByNumber];
+        let dashes = [Dash::ByNumber, Dash::Over(1), Dash::Over(2), Dash::ByNumber];
         assert_eq!(lines.each_ref().map(|line| line.dash), dashes);
+    }
+
+    #[test]
+    fn of_more_lines_on_each_other_than_dashes_can_show_none_is_dashed() {
+        let line = |shift: f64| Series::line("", (0..9).map(|k| (f64::from(k), 5.0 + shift)));
+        let pair = [7.0, 7.0].map(line);
+        let mut lines: Vec<Series> = (0..16).map(|_| line(0.0)).chain(pair).collect();
+        assert_eq!(Series::tell_apart(&mut lines, 0.1), 16);
+        assert!(lines[..17].iter().all(|line| line.dash == Dash::ByNumber));
+        assert_eq!(lines[17].dash, Dash::Over(1));
+        let mut four: Vec<Series> = (0..4).map(|_| line(0.0)).collect();
+        assert_eq!((Series::tell_apart(&mut four, 0.1), four[3].dash), (0, Dash::Over(3)));
+    }
+
+    #[test]
+    fn a_line_that_rests_at_0_for_most_of_the_time_is_dashed_if_it_moves_with_another() {
+        let pulse = |y: f64| Series::line("", (0..90).map(|k| (f64::from(k), if k < 10 { y } else { 0.0 })));
+        let mut lines = [pulse(5.0), pulse(5.05), pulse(3.0)];
+        let _ = Series::tell_apart(&mut lines, 0.1);
+        assert_eq!(lines.map(|line| line.dash), [Dash::ByNumber, Dash::Over(1), Dash::ByNumber]);
     }
 
     #[test]
@@ -208,10 +276,10 @@ mod tests {
                 (0..10).map(move |k| (f64::from(k), level + if k < at { 0.0 } else { way * f64::from(k - at + 1) }))
             };
             let mut lines = [Series::line("", line(1.0)), Series::line("", line(-1.0))];
-            Series::tell_apart(&mut lines, 0.1);
+            let _ = Series::tell_apart(&mut lines, 0.1);
             lines[1].dash
         };
-        assert_eq!((leaves(7, 5.0), leaves(3, 5.0)), (Dash::Over(1, 1), Dash::ByNumber));
+        assert_eq!((leaves(7, 5.0), leaves(3, 5.0)), (Dash::Over(1), Dash::ByNumber));
         // At 0 both are often, and hide nothing that matters.
         assert_eq!(leaves(7, 0.0), Dash::ByNumber);
     }

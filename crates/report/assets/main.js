@@ -8,17 +8,20 @@
   /** The plots over time that the page has in common with the figures: units, scales and what is left out are decided there. */
   function addPanels(late) {
     for (const panel of data.panels.filter((one) => one.late === late)) {
-      const series = panel.series.map(({ label, index, y, raw, at_borders: atBorders, other_at: otherAt = [], others = [] }) => {
-        let picture = 0;
-        const known = new Map(otherAt.map((after, k) => [picture += after, others[k]]));
-        return { label, index, y, raw, t: atBorders ? forces.borders : curves.t, known };
-      });
+      const series = panel.series.map(({ label, index, y, raw, at_borders: atBorders, ...rest }) =>
+        ({ label, index, y, raw, t: atBorders ? forces.borders : curves.t, known: knownOf(rest) }));
       plots.add({
         id: panel.id, contact: panel.contact, title: panel.title, unit: panel.unit, series, guides: panel.guides, least: panel.least,
         cut: panel.cut, height: late ? 160 : 170,
       });
       if (panel.note) htmlElement("p", "note", `${panel.note[0].toUpperCase()}${panel.note.slice(1)}.`, byId(`panel-${panel.id}`));
     }
+  }
+
+  /** The values of a curve at the pictures at which it shows others, by the numbers of these. */
+  function knownOf({ other_at: otherAt = [], others = [] }, factor = 1) {
+    let picture = 0;
+    return new Map(otherAt.map((after, k) => [picture += after, others[k] === null ? null : others[k] * factor]));
   }
 
   /** Bands of many bodies, and those that go and turn furthest. */
@@ -83,8 +86,12 @@
     const suffix = scenery.contacts.length > 1 ? `, ${forces.names[k]}` : "";
     const strikes = points.filter(({ impacts }) => impacts);
     // Colours are for those that touch: of all there would be too many.
-    const series = (key, factor, of = points) => of.map((point) =>
-      ({ label: contact.points[point.point].label, index: points.indexOf(point), t: forces.borders, y: scaled(point[key], factor), stepped: true }));
+    const series = (key, factor, of = points) => of.map((point) => {
+      const named = { label: contact.points[point.point].label, index: points.indexOf(point) };
+      const course = point.course?.[["normal", "tangential"].indexOf(key)];
+      return course ? { ...named, t: curves.t, y: scaled(course.y, factor), known: knownOf(course, factor) }
+        : { ...named, t: forces.borders, y: scaled(point[key], factor), stepped: true };
+    });
     for (const [i, [key, title]] of [["normal", "Normal force"], ["tangential", "Tangential force"]].entries()) {
       if (key === "tangential" ? forces.frictionless.includes(k) : forces.forceless?.includes(k)) continue;
       const [prefix, factor] = forces.units[k][i];
@@ -98,7 +105,9 @@
         id: `${key}-${k}`, contact: k, title: title + suffix, unit: `${prefix}N`, series: overTheRaw(lines, means), cut: forces.cuts[k][i] ?? undefined, floor: 0, least, height: 150,
       });
       const over = `means over ${forces.bucket}${strikes.length ? " without the impacts" : ""}`;
-      htmlElement("p", "note", means.length ? `Pale: ${over}. Strong: without vibrations of periods below ${forces.period}.` : `M${over.slice(1)}.`, byId(`panel-${key}-${k}`));
+      const ofSprings = points.some(({ course }) => course);
+      if (ofSprings && forces.springs) htmlElement("p", "note", `T${forces.springs.slice(1)}.`, byId(`panel-${key}-${k}`));
+      if (!ofSprings) htmlElement("p", "note", means.length ? `Pale: ${over}. Strong: without vibrations of periods below ${forces.period}.` : `M${over.slice(1)}.`, byId(`panel-${key}-${k}`));
       if (sums) {
         htmlElement("p", "note", "The sum over the points: how those that stick share it, equilibrium leaves open. Their shares are in contacts.csv.", byId(`panel-${key}-${k}`));
       }
@@ -308,8 +317,13 @@
     scene.root.classList.toggle("zoomed", !all);
   });
   byId("view-all").disabled = true;
+  /** What a picture that is saved says of itself. */
+  const caption = () => {
+    const exaggerated = factors[Number(exaggeration.value)];
+    return byId("time-readout").textContent + (scenery.beams.length && exaggerated !== 1 ? `, deflections × ${exaggerated}` : "");
+  };
   byId("save-picture").addEventListener("click", () =>
-    savePicture(scene.root, `${document.title.replace(/[^\p{L}\p{N}]+/gu, "-")}-${times[frame].toFixed(decimals)}s.svg`));
+    savePicture(scene.root, `${document.title.replace(/[^\p{L}\p{N}]+/gu, "-")}-${times[frame].toFixed(decimals)}s.svg`, caption()));
 
   /** A place of the pointer in the picture's own units. */
   const inPicture = (event) => {
@@ -381,7 +395,7 @@
     const parts = [];
     if (how.value === "arrows" && forces.points.length) parts.push("Green arrows: the contact's force on the block, mean since the sample before, without impacts.");
     if (how.value === "network") {
-      parts.push(`Green lines: contact forces, from centre to centre through the centre of pressure, means since the picture before; widest: ${withPrefix(chains.usual, "N")} or more.`);
+      parts.push(`Green lines: contact forces, from centre to centre through the centre of pressure, straight through what two opposed forces hold, means since the picture before; widest: ${withPrefix(chains.usual, "N")} or more.`);
     }
     if (data.loads.length) parts.push("Purple arrows: loads.");
     if (data.impacts.length) {

@@ -73,16 +73,18 @@ for (const [k, beam] of frames.beams.entries()) {
   }
 }
 
-/** The links of the network in a picture: number of the pair, force, and place in the first body's coordinates. */
+/** The links of the network in a picture: number of the pair, force, and place in the first body's coordinates; and whether the force goes on straight
+    through the first body, and through the other. */
 function linksOf(picture) {
   const numbers = unpacked(network.links[picture]);
   const links = [];
   let pair = 0;
   while (numbers.more()) {
-    pair += numbers.next();
+    const first = numbers.next();
+    pair += Math.floor(first / 4);
     const force = (numbers.next() / 4095) * network.largest[picture];
     const reach = scenery.blocks[network.pairs[pair][0]].reach / 1000;
-    links.push({ pair, force, x: numbers.signed() * reach, y: numbers.signed() * reach });
+    links.push({ pair, force, x: numbers.signed() * reach, y: numbers.signed() * reach, through: [first % 2 === 1, first % 4 > 1] });
   }
   return links;
 }

@@ -1,6 +1,6 @@
 // The network of contact forces: between two blocks a line from one centre to the other through the centre of pressure,
-// between a block and anything else (ground, a beam, a block whose motion is prescribed) from its centre to there. As wide as
-// the force is large.
+// between a block and anything else (ground, a beam, a block whose motion is prescribed) from its centre to there. Through a block that two
+// opposed forces hold, as a drum of a column, it goes straight. As wide as the force is large.
 
 const chains = (() => {
   if (!network) return null;
@@ -41,14 +41,26 @@ const chains = (() => {
     const lines = paths.map(() => "");
     // A third of a slender block at most, so that the block is seen beside it.
     const widest = Math.min(9, Math.max(1.2, 0.3 * typical * scale));
-    for (const link of linksAt(picture)) {
+    const placed = linksAt(picture).map((link) => {
+      const pose = poseOf(network.pairs[link.pair][0]);
+      const [sin, cos] = [Math.sin(pose.phi), Math.cos(pose.phi)];
+      return { link, at: [pose.x + cos * link.x - sin * link.y, pose.y + sin * link.x + cos * link.y] };
+    });
+    const joints = new Map();
+    for (const { link, at } of placed) {
+      network.pairs[link.pair].forEach((k, side) => { if (link.through[side]) joints.set(k, [...(joints.get(k) ?? []), at]); });
+    }
+    /** Where lines end in a block: halfway between its joints, where they go straight through it. */
+    const nodeOf = (k) => {
+      const [a, b] = joints.get(k) ?? [];
+      const { x, y } = poseOf(k);
+      return b ? place((a[0] + b[0]) / 2, (a[1] + b[1]) / 2) : place(x, y);
+    };
+    for (const { link, at } of placed) {
       const number = Math.min(classes, Math.round((link.force / usual) * classes));
       if (number === 0) continue;
-      const [block, other] = network.pairs[link.pair];
-      const pose = poseOf(block);
-      const [sin, cos] = [Math.sin(pose.phi), Math.cos(pose.phi)];
-      const centres = [block, other].filter((k) => k >= 0 && !scenery.blocks[k].driven).map(poseOf).map(({ x, y }) => place(x, y));
-      const middle = place(pose.x + cos * link.x - sin * link.y, pose.y + sin * link.x + cos * link.y);
+      const centres = network.pairs[link.pair].filter((k) => k >= 0 && !scenery.blocks[k].driven).map(nodeOf);
+      const middle = place(...at);
       const line = centres.length ? `M${centres[0]}L${middle}${centres.length > 1 ? `L${centres[1]}` : ""}` : "";
       lines[number - 1] += line;
     }

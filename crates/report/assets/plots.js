@@ -39,10 +39,9 @@ const plots = (() => {
     if (isMany) legend.style.setProperty("--names", String(Math.min(30, Math.max(...keys.map(({ label }) => label.length)))));
     for (const series of keys) {
       const key = htmlElement("span", series.label ? "key" : "key bare", undefined, legend);
-      const sample = sampleOf(series);
-      const swatch = svgElement("svg", { viewBox: `0 0 ${sample.width} 8`, style: `width: ${sample.width}px`, "aria-hidden": "true" }, key);
+      const swatch = svgElement("svg", { viewBox: "0 0 18 8", "aria-hidden": "true" }, key);
       if (series.upper) svgElement("path", { d: "M0 0h18v8h-18z", class: "area", style: `fill: ${colour(series.index)}; fill-opacity: ${series.inner ? 0.45 : 0.2}` }, swatch);
-      else svgElement("path", { d: `M0 4h${sample.width}`, style: `${stroke(series)}; ${sample.style}`, "stroke-width": 2 }, swatch);
+      else svgElement("path", { d: "M0 4h18", style: `${stroke(series)}${offset(series)}`, "stroke-width": 2 }, swatch);
       if (series.label) key.append(series.label);
       series.readout = htmlElement("b", "", "", key);
     }
@@ -63,14 +62,19 @@ const plots = (() => {
     for (const { short, name } of panel.bands?.filter((band) => band.name && band.name !== band.short) ?? []) {
       htmlElement("span", "key", `${short}: ${name}`, legend);
     }
+    if (panel.tooMany) htmlElement("span", "coincide", `${panel.tooMany} curves coincide, wholly or in part`, row);
     if (panel.cut) {
       const toggle = htmlElement("button", "link", "", row);
       toggle.type = "button";
-      const cut = `peaks cut, up to ${number(panel.cut.largest, 3)} ${panel.unit}`;
+      // Of what rings the pale band is cut, to both sides, not single peaks.
+      const pale = panel.series.filter(({ raw }) => raw);
+      const what = pale.length ? "pale curves" : "peaks";
+      const below = pale.some(({ y }) => y.some((x) => x < -0.01 * panel.cut.limit));
+      const cut = `${what} cut, up to ${below ? "±" : ""}${number(panel.cut.largest, 3)} ${panel.unit}`;
       // Paper has no buttons, but the same axis.
       const printed = htmlElement("span", "on-paper", "", row);
       const say = () => {
-        toggle.textContent = panel.whole ? "cut the peaks" : `${cut}: show all`;
+        toggle.textContent = panel.whole ? `cut the ${what}` : `${cut}: show all`;
         printed.textContent = panel.whole ? "" : cut;
       };
       toggle.addEventListener("click", () => {
@@ -89,39 +93,50 @@ const plots = (() => {
     panel.unitText.textContent = unit ? `(${unit})` : "";
   }
 
-  /** The dashes of a line on others, as in the figures: all have the same period, each half the dashes of the one below; of more than four, equal parts. */
-  const over = (lines, most) => (most <= 3 ? `${10 / 2 ** lines} ${10 - 10 / 2 ** lines}` : `${4 * (most + 1 - lines)} ${4 * lines}`);
-  const stroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${series.over ? over(series.over, series.mostOver) : dash(series.index)}; fill: none`;
-
-  /** The sample of a line in a legend: of a line on others a whole period, from the middle of a dash to that of the next, as its gap would not be seen at an
-      end; longer periods to a smaller scale. */
-  function sampleOf(series) {
-    const [usual, longest] = [18, 56];
-    if (!series.over) return { width: usual, style: "" };
-    const dashes = over(series.over, series.mostOver).split(" ").map(Number);
-    const period = dashes[0] + dashes[1];
-    const width = Math.min(longest, Math.max(usual, period));
-    const scale = Math.min(1, width / period);
-    return { width, style: `stroke-dasharray: ${dashes.map((length) => scale * length).join(" ")}; stroke-dashoffset: ${0.5 * scale * dashes[0]}` };
-  }
+  /** The dashes of a line on others, as in the figures: all have the same period, each half the dashes of the one below. */
+  const over = (lines) => [10 / 2 ** lines, 10 - 10 / 2 ** lines];
+  const stroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${series.over ? over(series.over).join(" ") : dash(series.index)}; fill: none`;
+  /** Of the sample of a line on others in a legend: from the middle of a dash on, as its gap would not be seen at an end. */
+  const offset = (series) => (series.over ? `; stroke-dashoffset: ${over(series.over)[0] / 2}` : "");
 
   /** The largest value of a panel, by which its readouts have their decimals. */
   const largestOf = ({ series, cut }) => Math.min(cut?.limit ?? Infinity, series.reduce((most, { y, upper }) => [y, upper ?? []].reduce((largest, values) =>
     values.reduce((size, x) => Math.max(size, Math.abs(x ?? 0) || 0), largest), most), 0));
 
-  /** Dashes a line that lies on earlier ones, which then show in the gaps: within 1 % of what the panel shows, all along or for half of its length away from 0. */
-  function tellApart({ series, cut }) {
+  /** On more others than this a line isn't dashed: its dashes would be too short to be seen. */
+  const mostOver = 3;
+
+  /** Dashes a line that lies on earlier ones, which then show in the gaps: within 1 % of what the panel shows, all along or for half of its length away from 0.
+      Where too many lie on each other none is dashed, and the panel says how many they are. */
+  function tellApart(panel) {
+    const { series, cut } = panel;
     const finite = series.flatMap(({ y }) => y.filter((x) => x !== null && Number.isFinite(x)));
-    const [low, high] = finite.reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
-    const within = 0.01 * Math.min(high - low, 2 * (cut?.limit ?? Infinity));
+    const [low, high] = [...finite, ...(panel.floor === undefined ? [] : [panel.floor])]
+      .reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
+    const within = 0.01 * Math.min(Math.max(high - low, leastRange(low, high, panel.least ?? 0)), 2 * (cut?.limit ?? Infinity));
     const near = (a, b) => {
       if (a.t !== b.t || a.upper || b.upper || a.raw !== b.raw || a.y.length !== b.y.length) return false;
       const same = a.y.map((x, i) => Math.abs(x - b.y[i]) <= within);
-      return same.every(Boolean) || 2 * same.filter((is, i) => is && Math.abs(a.y[i]) > within).length > same.length;
+      const away = same.filter((_, i) => Math.abs(a.y[i]) > within);
+      return same.every(Boolean) || (20 * away.length > same.length && 2 * away.filter(Boolean).length > away.length);
     };
-    series.forEach((line, k) => { line.over = series.slice(0, k).reduce((most, earlier) => (near(line, earlier) ? Math.max(most, earlier.over + 1) : most), 0); });
-    const most = Math.max(0, ...series.map(({ over: lines }) => lines));
-    series.forEach((line) => { line.mostOver = most; });
+    const group = series.map((_, k) => k);
+    series.forEach((line, k) => {
+      line.over = 0;
+      series.slice(0, k).forEach((earlier, i) => {
+        if (!near(line, earlier)) return;
+        line.over = Math.max(line.over, earlier.over + 1);
+        const [from, to] = [Math.max(group[k], group[i]), Math.min(group[k], group[i])];
+        group.forEach((number, j) => { if (number === from) group[j] = to; });
+      });
+    });
+    panel.tooMany = 0;
+    for (const number of new Set(group)) {
+      const own = series.filter((_, k) => group[k] === number);
+      if (!own.some((line) => line.over > mostOver)) continue;
+      panel.tooMany = Math.max(panel.tooMany, own.length);
+      own.forEach((line) => { line.over = 0; });
+    }
   }
 
   function add(panel) {

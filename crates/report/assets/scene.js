@@ -551,14 +551,33 @@ const scene = (() => {
     return { x: px(x - reach * normal[0]), y: py(y - reach * normal[1]), normal, tangent: [normal[1], -normal[0]] };
   }
 
-  function arrow(at, [normal, tangential], length, className) {
+  /** The forces of the points that press at a time, N, with where they are drawn. How points of a pair that face one way share their tangential force,
+      equilibrium leaves open: it is shared as their normal forces are, which is what those that slide do anyway. Springs decide it themselves. */
+  function pressing(t, at) {
+    const stepped = (y) => valueAt({ t: forces.borders, y, stepped: true }, t);
+    const all = forces.points
+      .map((point) => ({ point, n: stepped(point.normal), s: stepped(point.tangential) }))
+      .filter(({ n }) => n > 0)
+      .map((force) => ({ ...force, place: contactPoint(force.point.contact, force.point.point, at) }));
+    const facesAlike = (a, b) => a.normal[0] * b.normal[0] + a.normal[1] * b.normal[1] > 0.99;
+    const byPairs = new Map(all.map(({ point }) => [point.contact, []]));
+    all.forEach((force) => byPairs.get(force.point.contact).push(force));
+    return all.map(({ point, n, s, place }) => {
+      if (point.course) return { point, n, s, place };
+      const together = byPairs.get(point.contact).filter((other) => facesAlike(other.place, place));
+      const [normal, tangential] = together.reduce((sum, other) => [sum[0] + other.n, sum[1] + other.s], [0, 0]);
+      return { point, n, s: (tangential * n) / normal, place };
+    });
+  }
+
+  function arrow(at, [normal, tangential], length, className, contact) {
     const direction = [0, 1].map((k) => normal * at.normal[k] + tangential * at.tangent[k]);
     const size = Math.hypot(...direction);
     if (!(size > 0) || length < 3) return;
     const tail = [at.x - (direction[0] / size) * length, at.y + (direction[1] / size) * length];
     svgElement("path", {
       d: `M${tail[0].toFixed(2)} ${tail[1].toFixed(2)}L${at.x.toFixed(2)} ${at.y.toFixed(2)}`,
-      class: className, "marker-end": "url(#head)",
+      class: className, "marker-end": "url(#head)", "data-contact": contact,
     }, layers.arrows);
   }
 
@@ -680,12 +699,9 @@ const scene = (() => {
     drawLoads(at);
     layers.arrows.replaceChildren();
     if (drawn === "arrows") {
-      for (const point of forces.points) {
-        const [n, s] = [point.normal, point.tangential].map((y) => valueAt({ t: forces.borders, y, stepped: true }, t));
-        if (n > 0) {
-          const length = Math.min(padding.bottom - 22, (34 * Math.hypot(n, s)) / usual);
-          arrow(contactPoint(point.contact, point.point, Math.round(at)), [n, s], length, "force");
-        }
+      for (const { point, n, s, place: end } of pressing(t, Math.round(at))) {
+        const length = Math.min(padding.bottom - 22, (34 * Math.hypot(n, s)) / usual);
+        arrow(end, [n, s], length, "force", point.contact);
       }
     }
     const since = t - Math.max(memory, 1.01 * (t - times[Math.max(0, Math.ceil(at) - 1)]));

@@ -16,6 +16,7 @@ mod drawings;
 mod figures;
 mod frames;
 mod html;
+mod jolts;
 mod means;
 mod network;
 mod opening;

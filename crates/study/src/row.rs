@@ -94,6 +94,23 @@ pub fn pareto_front_of(rows: &[Row]) -> Vec<usize> {
     pareto_front(&points).into_iter().map(|k| order[k]).collect()
 }
 
+/// A positive number to two significant digits.
+fn two_digits(x: f64) -> f64 {
+    let unit = 10f64.powf(x.log10().floor() - 1.0);
+    if unit > 0.0 { (x / unit).round() * unit } else { x }
+}
+
+/// Of the rows on the front those that none of them beats in both time, measured where it was, and error, of which none below `bar` is known, as they are told, to two
+/// digits; cheapest first.
+pub(crate) fn unbeaten(front: &[usize], rows: &[Row], bar: f64) -> Vec<usize> {
+    let point = |number: &usize| {
+        let row = &rows[*number];
+        Some((two_digits(row.measured().or(row.modelled())?), two_digits(row.accuracy()?.max(bar))))
+    };
+    let points: Vec<_> = front.iter().map(|number| point(number).unwrap_or((f64::NAN, f64::NAN))).collect();
+    pareto_front(&points).into_iter().map(|k| front[k]).collect()
+}
+
 /// Whether two rows differ in cost or accuracy by more than 5 %, or in whether they came to their
 /// end.
 pub(crate) fn differ(a: &Row, b: &Row) -> bool {
@@ -112,7 +129,28 @@ pub(crate) fn as_cheap(cost: f64, least: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::pareto_front;
+    use super::*;
+
+    #[test]
+    fn what_another_row_beats_in_time_and_error_is_not_listed() {
+        let row = |time: f64, accuracy: f64| Row {
+            setting: Setting::none(),
+            stage: 1,
+            result: Ok(CompletedRun {
+                errors: Errors::of_accuracy(accuracy),
+                work: Work::default(),
+                unconverged: 0,
+                warned: Vec::new(),
+            }),
+            cpu: CpuTime::of(vec![time]),
+        };
+        // By counted work the first was the cheapest.
+        let rows = [row(420e-6, 1.7), row(300e-6, 0.18), row(9.0, 9.0), row(500e-6, 1e-3), row(600e-6, 1e-4)];
+        assert_eq!(unbeaten(&[0, 1, 3, 4], &rows, 1e-5), [1, 3, 4]);
+        let equal = [row(84e-6, 2.11e-4), row(100e-6, 2.08e-4)];
+        assert_eq!(unbeaten(&[0, 1], &equal, 1e-5), [0], "as they are told");
+        assert_eq!(unbeaten(&[0, 1, 3, 4], &rows, 2e-3), [1, 3], "no error below 2e-3 is known");
+    }
 
     #[test]
     fn no_point_of_the_front_is_beaten_and_every_other_one_is() {

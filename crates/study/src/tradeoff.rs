@@ -5,6 +5,7 @@ use crate::recommend::{Advice, ConfirmedErrors, TARGETS, advise, eligible};
 use crate::reference::{self, Reference};
 use crate::row::{CompletedRun, Row, pareto_front_of};
 use crate::search::{self, PlannedSetting, SearchState};
+use crate::setting_warning::of_the_scene;
 use crate::simulate::{expect, simulate_within_limit};
 use crate::{Failure, Sampling, Setting, StudyScene, runner, timing};
 use std::collections::BTreeSet;
@@ -114,6 +115,14 @@ impl Tradeoff {
             return Advice::BeforeImpact;
         }
         advise(&self.rows, &self.axes, target, self.bar(), &self.reference.warned)
+    }
+
+    /// Whether `check` or `run` warns of a row's setting, of more than they warn of in any setting of the scene.
+    #[must_use]
+    pub fn is_warned(&self, row: &Row) -> bool {
+        let done = self.rows.iter().filter(|row| row.result.is_ok()).map(Row::warned);
+        let of_the_scene = of_the_scene(&self.reference.warned, done);
+        row.warned().iter().any(|warned| !of_the_scene.contains(&warned.kind))
     }
 
     /// The error bar of the accuracy.

@@ -328,7 +328,17 @@ impl Curves {
         let strikes = works().any(|work| work.hardest > 0.0);
         let impacts = if strikes { works().map(|work| work.hardest).collect() } else { Vec::new() };
         let (normal, tangential) = (mean(0), mean(1));
-        Some(ForceCurve { normal, tangential, slip, state, usual, impacts, alternates, hides_slip: false })
+        Some(ForceCurve {
+            normal,
+            tangential,
+            course: None,
+            slip,
+            state,
+            usual,
+            impacts,
+            alternates,
+            hides_slip: false,
+        })
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::chain::{FEWEST, LastPicture, Thrust, ThrustLine, thrust_lines};
 use super::content;
+use super::network::passes_on;
 use super::placed;
 use super::recorder::PageRecorder;
 use super::redundant;
@@ -38,7 +39,8 @@ fn time_note([from, to]: [f64; 2]) -> String {
 }
 
 /// The network of contact forces at the end: between two blocks a line from one centre to the other through the centre of
-/// pressure, between a block and anything else, as a block whose motion is prescribed, from its centre to that.
+/// pressure, between a block and anything else, as a block whose motion is prescribed, from its centre to that; through a block that
+/// [passes a force on](passes_on) straight.
 pub(super) fn force_chains(recorder: &PageRecorder) -> Option<Drawing> {
     let scenery = &recorder.scenery;
     let is_free = |block: usize| !scenery.blocks[block].driven;
@@ -51,22 +53,31 @@ pub(super) fn force_chains(recorder: &PageRecorder) -> Option<Drawing> {
     let ends = |k: usize| poses().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p[k]), b.max(p[k])));
     let size = (ends(0).1 - ends(0).0).max(0.8 * (ends(1).1 - ends(1).0)) + 2.0 * reaches[reaches.len() - 1];
     let widest = WIDEST.min(0.9 * reaches[reaches.len() / 2] / size * DRAWING);
+    // Where the line of a force changes its width: in a block by which it goes straight halfway between the joints, else at the centre.
+    let other_of = |thrust: &Thrust| if let SupportingBody::Block(other) = thrust.other { Some(other) } else { None };
+    let least = 0.5 / CLASSES as f64 * largest;
+    let shown = || last.thrusts.iter().filter(|thrust| thrust.size() >= least);
+    let links: Vec<_> = shown().map(|thrust| (thrust.block, other_of(thrust), thrust.force)).collect();
+    let passes_on = passes_on(scenery.blocks.len(), &links);
+    let node = |block: usize| {
+        let own = shown().filter(|thrust| thrust.block == block || other_of(thrust) == Some(block));
+        match own.map(|thrust| thrust.at).collect::<Vec<_>>()[..] {
+            [a, b] if passes_on[block] => (0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])),
+            _ => (last.poses[block][0], last.poses[block][1]),
+        }
+    };
     let mut classes: Vec<Vec<Vec<(f64, f64)>>> = vec![Vec::new(); CLASSES + 1];
     for thrust in &last.thrusts {
         let class = (thrust.size() / largest * CLASSES as f64).round() as usize;
-        let centre = |block: usize| is_free(block).then(|| (last.poses[block][0], last.poses[block][1]));
-        let other = match thrust.other {
-            SupportingBody::Block(other) => centre(other),
-            SupportingBody::Ground | SupportingBody::Beam(_) => None,
-        };
+        let node = |block: usize| is_free(block).then(|| node(block));
         let at = Some((thrust.at[0], thrust.at[1]));
-        let line = [centre(thrust.block), at, other].into_iter().flatten().collect();
+        let line = [node(thrust.block), at, other_of(thrust).and_then(node)].into_iter().flatten().collect();
         classes[class.min(CLASSES)].push(line);
     }
     for (class, lines) in classes.into_iter().enumerate().skip(1).filter(|(_, lines)| !lines.is_empty()) {
         drawing = drawing.lines(lines, widest * class as f64 / CLASSES as f64, Colour::Series(1));
     }
-    let least = with_digits(0.5 / CLASSES as f64 * largest, "N", 2);
+    let least = with_digits(least, "N", 2);
     Some(
         drawing
             .key(Colour::Series(1), widest, format!("{}, the largest force", with_digits(largest, "N", 3)))

@@ -163,7 +163,7 @@ impl Plots<'_> {
     fn portrait(&self, portrait: &Portrait) -> Figure {
         let part = |line: &PortraitLine, label: &str, points: std::ops::Range<usize>| {
             let points = line.x[points.clone()].iter().copied().zip(line.v[points].iter().copied());
-            Series::line(label, points).number(line.number)
+            Series::line(label, points).number(line.number).over(line.over)
         };
         // What is pale stays behind.
         let pale = portrait.lines.iter().flat_map(|line| {
@@ -286,17 +286,24 @@ impl Plots<'_> {
                     Series::staircase(label, borders.iter().copied().zip(y.iter().map(|y| factor * y)), end)
                         .number(point)
                 };
+                let course = |part: usize, factor: f64| {
+                    let of = |course: &[Vec<f64>; 2]| {
+                        let points = self.t.iter().copied().zip(course[part].iter().map(|y| factor * y));
+                        Series::line(label, points.collect::<Vec<_>>()).number(point)
+                    };
+                    forces.course.as_ref().map(of)
+                };
                 // The raw values stay behind their mean, which then has the name.
-                normal.push(if mean.is_some() {
-                    step(&forces.normal, factor, "").faint()
-                } else {
-                    step(&forces.normal, factor, label)
+                normal.push(match mean {
+                    Some(_) => step(&forces.normal, factor, "").faint(),
+                    None => course(0, factor).unwrap_or_else(|| step(&forces.normal, factor, label)),
                 });
                 let scaled =
                     |mean: &[f64]| borders.iter().copied().zip(mean.iter().map(|y| factor * y)).collect::<Vec<_>>();
                 means.push(mean.as_deref().map(|mean| Series::line(label, scaled(mean)).number(point)));
                 match (sums, point) {
-                    (false, _) => tangential.push(step(&forces.tangential, sideways, label)),
+                    (false, _) => tangential
+                        .push(course(1, sideways).unwrap_or_else(|| step(&forces.tangential, sideways, label))),
                     (true, 0) => tangential.push(step(&self.panels.tangential_sum(contact), sideways, "")),
                     (true, _) => {}
                 }
@@ -325,16 +332,17 @@ impl Plots<'_> {
                 }
                 let (range, cut) = cut_to(cut.map(|(limit, most)| (factor * limit, factor * most)), &lines, &unit);
                 let over = with_digits(self.panels.curves.longest_bucket(), "s", 2);
-                let meant = if what == "Normal" && means.iter().any(Option::is_some) {
-                    let period = with_digits(period, "s", 3);
-                    format!("pale: means over {over}; strong: without vibrations of periods below {period}")
+                let meant = if contact.has_duration {
+                    self.panels.told_of_springs()
+                } else if what == "Normal" && means.iter().any(Option::is_some) {
+                    Some(format!("pale: means over {over}; strong: without vibrations of periods below {period}"))
                 } else {
-                    format!("means over {over}{}", if impacts.is_empty() { "" } else { " without impacts" })
+                    Some(format!("means over {over}{}", if impacts.is_empty() { "" } else { " without impacts" }))
                 };
                 let many = self.panels.redundant[pair].note(what == "Tangential").map(str::to_owned);
                 let turns = (alternates && what == "Tangential").then(|| "sticks and slips by turns".to_owned());
-                let note =
-                    [name.clone(), Some(meant), turns, cut, many].into_iter().flatten().collect::<Vec<_>>().join("; ");
+                let note = [name.clone(), meant, turns, cut, many].into_iter().flatten().collect::<Vec<_>>().join("; ");
+                let note = (!note.is_empty()).then_some(note);
                 let label = format!("{what} force ({unit})");
                 // From 0, as on the page: what varies by rounding only is then seen as constant.
                 let y = match range {
@@ -447,7 +455,13 @@ fn cut_to(at: Option<(f64, f64)>, lines: &[Series], unit: &str) -> (Option<(f64,
     let Some((limit, largest)) = at else { return (None, None) };
     let negative = values(lines).any(|y| y < -0.01 * limit);
     let low = if negative { -limit } else { -0.06 * limit };
-    (Some((low, limit)), Some(format!("peaks cut, up to {} {unit}", shortest(largest, 3))))
+    // Of what rings the pale band is cut, to both sides, not single peaks.
+    let what = match (lines.iter().any(Series::is_faint), negative) {
+        (true, true) => "pale curves cut, up to ±",
+        (true, false) => "pale curves cut, up to ",
+        (false, _) => "peaks cut, up to ",
+    };
+    (Some((low, limit)), Some(format!("{what}{} {unit}", shortest(largest, 3))))
 }
 
 /// The y axis of lines that may have been cut to a range.

@@ -3,14 +3,18 @@
 //!
 //! It is a weighted mean about each time, with the weights of a windowed sinc: what vibrates slower than the period told stays as large as it
 //! is, what vibrates faster goes. A mean of equal weights flattens a vibration of twice its window to 64 %, and lets some that are faster through.
+//!
+//! No mean reaches across an impact, or another jolt: the force would change before what changes it.
+
+mod weights;
 
 use super::curves::{Curves, ForceCurve};
+use super::jolts::Jolts;
+use crate::with_digits;
+use weights::Weights;
 
 /// The longest period is this part of the run, rounded to 1, 2 or 5 times a power of ten.
 const PART: f64 = 1.0 / 40.0;
-
-/// The weights reach over this many periods on both sides: periods of 1.6 times the one told keep 99 % of their amplitude, those of 0.7 times lose 99 %.
-const REACH: f64 = 2.0;
 
 /// Where smoothing twice takes this part of what smoothing once has left, a vibration lies between those kept and those taken, and is made smaller.
 const BETWEEN: f64 = 0.05;
@@ -35,32 +39,148 @@ fn rounded_down(x: f64) -> f64 {
     digit * power
 }
 
-/// The period, s, that is the border between the fast vibrations of these quantities, given by their means over the buckets, and the slow ones: the
-/// longest one, or the next shorter one where vibrations lie about the longest, of which they would lose a part.
-pub(super) fn period(curves: &Curves, quantities: &[Vec<f64>]) -> f64 {
-    let (longest, borders) = (longest(curves), curves.borders());
-    if !(longest > 0.0) || !is_long(&borders) {
-        return longest;
+/// What takes the fast vibrations of some quantities away.
+#[derive(Debug)]
+pub(super) struct Filter {
+    /// The border between the fast vibrations and the slow ones, s.
+    period: f64,
+    /// The borders of buckets before which a mean ends, and after which another begins: before the buckets with jolts.
+    cuts: Vec<usize>,
+    /// Whether jolts follow each other within a period, so that means reach across all but the first of them.
+    reaches_across: bool,
+    /// What the jolts are.
+    what: &'static str,
+}
+
+impl Filter {
+    /// A filter for quantities with these means over the buckets, in a run with these jolts: what vibrates slower than the
+    /// longest period stays, or than the next shorter one where vibrations lie about the longest, of which they would lose a part.
+    pub(super) fn of(curves: &Curves, jolts: &Jolts, quantities: &[Vec<f64>]) -> Self {
+        let (longest, borders) = (longest(curves), curves.borders());
+        let filter = Self::with(longest, &borders, jolts);
+        if !(longest > 0.0) || !is_long(&borders) {
+            return filter;
+        }
+        let shorter = Self::with(rounded_down(0.6 * longest), &borders, jolts);
+        let of_longest = filter.between(&borders, quantities);
+        let is_between = of_longest > BETWEEN && 2.0 * shorter.between(&borders, quantities) < of_longest;
+        if is_between { shorter } else { filter }
     }
-    let shorter = rounded_down(0.6 * longest);
-    let weights = Weights::new();
-    let whole = [[0, borders.len() - 1]];
-    // The variance that smoothing once more takes from all of them together, as a part of theirs.
-    let between = |period: f64| {
+
+    fn with(period: f64, borders: &[f64], jolts: &Jolts) -> Self {
+        let mut filter = Self { period, cuts: Vec::new(), reaches_across: false, what: jolts.what };
+        for t in &jolts.times {
+            let bucket = borders.partition_point(|border| border < t).saturating_sub(1);
+            match filter.cuts.last().copied() {
+                Some(before) if before == bucket => {}
+                Some(before) if borders[bucket] - borders[before] < period => filter.reaches_across = true,
+                _ => filter.cuts.push(bucket),
+            }
+        }
+        filter
+    }
+
+    /// The variance that smoothing once more takes from all of these quantities together, as a part of theirs.
+    fn between(&self, borders: &[f64], quantities: &[Vec<f64>]) -> f64 {
+        let weights = Weights::new();
+        let stretches = self.stretches([0, borders.len() - 1]);
         let (mut taken, mut all) = (0.0, 0.0);
         for values in quantities {
-            let once = weights.over(&borders, values, period, &whole);
+            let once = weights.over(borders, values, self.period, &stretches);
             let inner: Vec<f64> = once.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
-            let twice = weights.over(&borders, &inner, period, &whole);
-            // Towards the ends of a run nothing is smoothed.
+            let twice = weights.over(borders, &inner, self.period, &stretches);
             let mean = once.iter().sum::<f64>() / once.len() as f64;
             taken += once.iter().zip(&twice).map(|(once, twice)| (once - twice).powi(2)).sum::<f64>();
             all += once.iter().map(|once| (once - mean).powi(2)).sum::<f64>();
         }
         if all > 0.0 { (taken / all).sqrt() } else { 0.0 }
-    };
-    let of_longest = between(longest);
-    if of_longest > BETWEEN && 2.0 * between(shorter) < of_longest { shorter } else { longest }
+    }
+
+    /// A stretch, given by the borders at its ends, in parts between which jolts lie.
+    fn stretches(&self, [first, last]: [usize; 2]) -> Vec<[usize; 2]> {
+        let inner = self.cuts.iter().copied().filter(|cut| (first + 1..last).contains(cut));
+        let ends: Vec<usize> = std::iter::once(first).chain(inner).chain([last]).collect();
+        ends.windows(2).map(|ends| [ends[0], ends[1]]).collect()
+    }
+
+    /// The period as it is told, with how far means reach where there are jolts.
+    pub(super) fn told(&self) -> String {
+        let period = with_digits(self.period, "s", 3);
+        match (self.cuts.is_empty(), self.reaches_across) {
+            (true, _) => period,
+            (_, false) => format!("{period}, not across {}", self.what),
+            _ => format!("{period}, not across {} further apart than that", self.what),
+        }
+    }
+
+    /// The normal force at the borders of the buckets without fast vibrations, N: from what lies between jolts and in the
+    /// stretch in which the contact touches. `None` where the raw values are as smooth.
+    pub(super) fn normal(&self, curves: &Curves, forces: &ForceCurve) -> Option<Vec<f64>> {
+        let borders = curves.borders();
+        if forces.normal.is_empty() || !is_long(&borders) || self.period <= 0.0 {
+            return None;
+        }
+        // Before it touches and after it has left there is no force, of which a mean beyond would make a ramp.
+        let touches = touches(&borders, &forces.normal, self.period);
+        let stretches: Vec<[usize; 2]> = touches.into_iter().flat_map(|touch| self.stretches(touch)).collect();
+        let mut means = Weights::new().over(&borders, &forces.normal, self.period, &stretches);
+        // Beside a jump the weights overshoot, but no contact pulls.
+        means.iter_mut().for_each(|mean| *mean = mean.max(0.0));
+        let largest = means.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        // Of the time in which it presses: of one that only strikes now and then, a mean would make blocks as wide as the period.
+        let pressing = || means.iter().zip(&forces.normal).filter(|(_, raw)| **raw > 0.0);
+        let strays = pressing().filter(|(mean, raw)| (*mean - *raw).abs() > STRAY * largest).count();
+        (strays as f64 > LEAST * pressing().count() as f64 && pressing().count() * 10 > means.len()).then_some(means)
+    }
+
+    /// A quantity at the borders of the buckets without fast vibrations. `None` unless it rings: strays from what is
+    /// left, and crosses it at least once in a period, on average. A slower vibration is seen as it is.
+    pub(super) fn ringing(&self, curves: &Curves, column: usize) -> Option<Vec<f64>> {
+        let borders = curves.borders();
+        if !is_long(&borders) || self.period <= 0.0 {
+            return None;
+        }
+        let stretches = self.stretches([0, borders.len() - 1]);
+        let means = Weights::new().over(&borders, &curves.means(column), self.period, &stretches);
+        let largest = means.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let own = curves.means(column);
+        // Two points of the curve lie in each bucket, after the one at the start.
+        let values = curves.curve(column);
+        let points = values[1..].chunks_exact(2).map(|pair| [pair[0], pair[1]]);
+        let (mut far, mut crossings, mut above) = (0, 0, None);
+        for (k, (pair, ends)) in points.zip(means.windows(2)).enumerate() {
+            let mean = 0.5 * (ends[0] + ends[1]);
+            far += usize::from(pair.iter().any(|x| (x - mean).abs() > STRAY * largest));
+            let now = own[k] > mean;
+            crossings += usize::from(above.is_some_and(|before: bool| before != now));
+            above = Some(now);
+            // A bucket of many steps: what moves through it has about the change of its means as range, what rings in it more.
+            let change = |other: Option<&f64>| other.map_or(0.0_f64, |other| (other - own[k]).abs());
+            let drift = change(own.get(k + 1)).max(change(k.checked_sub(1).and_then(|before| own.get(before))));
+            crossings += 2 * usize::from((pair[1] - pair[0]).abs() > RINGS * drift.max(STRAY * largest));
+        }
+        let periods = (borders[borders.len() - 1] - borders[0]) / self.period;
+        (far as f64 > LEAST * own.len() as f64 && crossings as f64 >= periods).then_some(means)
+    }
+
+    /// The largest value of a quantity that rings within half of the period on either side, but not across jolts, at the borders of the buckets: what stays of one without a
+    /// sign, as a stress, of which a mean would say nothing. `None` unless it rings.
+    pub(super) fn largest_about(&self, curves: &Curves, column: usize) -> Option<Vec<f64>> {
+        self.ringing(curves, column)?;
+        let borders = curves.borders();
+        let values = curves.curve(column);
+        let highest: Vec<f64> = values[1..].chunks_exact(2).map(|pair| pair[0].max(pair[1])).collect();
+        let mut largest = vec![0.0; borders.len()];
+        for [begin, end] in self.stretches([0, borders.len() - 1]) {
+            for place in begin + usize::from(begin > 0)..=end {
+                let [from, to] = [-0.5, 0.5].map(|part| borders[place] + part * self.period);
+                let first = borders.partition_point(|border| *border <= from).saturating_sub(1).clamp(begin, end - 1);
+                let after = borders.partition_point(|border| *border < to).clamp(first + 1, end);
+                largest[place] = highest[first..after].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            }
+        }
+        Some(largest)
+    }
 }
 
 /// The stretches of time in which a contact presses, s, as indices of the borders at their ends: gaps shorter than the period belong to
@@ -76,136 +196,12 @@ fn touches(borders: &[f64], normal: &[f64], period: f64) -> Vec<[usize; 2]> {
     touches
 }
 
-/// The normal force at the borders of the buckets without vibrations of less than this period (s), N: from what lies in the run and in the
-/// stretch in which the contact touches. `None` where the raw values are as smooth.
-pub(super) fn normal(curves: &Curves, forces: &ForceCurve, period: f64) -> Option<Vec<f64>> {
-    let borders = curves.borders();
-    if forces.normal.is_empty() || !is_long(&borders) || period <= 0.0 {
-        return None;
-    }
-    // Before it touches and after it has left there is no force, of which a mean beyond would make a ramp.
-    let touches = touches(&borders, &forces.normal, period);
-    let mut means = Weights::new().over(&borders, &forces.normal, period, &touches);
-    // Beside a jump the weights overshoot, but no contact pulls.
-    means.iter_mut().for_each(|mean| *mean = mean.max(0.0));
-    let largest = means.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    // Of the time in which it presses: of one that only strikes now and then, a mean would make blocks as wide as the period.
-    let pressing = || means.iter().zip(&forces.normal).filter(|(_, raw)| **raw > 0.0);
-    let strays = pressing().filter(|(mean, raw)| (*mean - *raw).abs() > STRAY * largest).count();
-    (strays as f64 > LEAST * pressing().count() as f64 && pressing().count() * 10 > means.len()).then_some(means)
-}
-
 /// What rings within a bucket has a range larger by this than the change of the means from bucket to bucket.
 const RINGS: f64 = 3.0;
 
 /// Whether there are enough buckets for means over several.
 fn is_long(borders: &[f64]) -> bool {
     borders.len() * 2 >= 40
-}
-
-/// Weights of a windowed sinc: their integral from the start of their reach, at equally spaced places of it.
-struct Weights(Vec<f64>);
-
-/// Places at which the integral is known.
-const PLACES: usize = 1024;
-
-impl Weights {
-    fn new() -> Self {
-        use std::f64::consts::PI;
-        let weight = |u: f64| {
-            let x = 2.0 * PI * REACH * u;
-            let sinc = if x == 0.0 { 1.0 } else { x.sin() / x };
-            sinc * 0.5 * (1.0 + (PI * u).cos())
-        };
-        let mut integrals = vec![0.0];
-        for place in 0..PLACES {
-            let middle = 2.0 * (place as f64 + 0.5) / PLACES as f64 - 1.0;
-            integrals.push(integrals[place] + weight(middle));
-        }
-        let all = integrals[PLACES];
-        integrals.iter_mut().for_each(|integral| *integral /= all);
-        Self(integrals)
-    }
-
-    /// The integral from the start of their reach to `u`, −1 at this start and 1 at the end.
-    fn up_to(&self, u: f64) -> f64 {
-        let at = (0.5 * (u + 1.0) * PLACES as f64).clamp(0.0, PLACES as f64);
-        let place = (at as usize).min(PLACES - 1);
-        self.0[place] + (at - place as f64) * (self.0[place + 1] - self.0[place])
-    }
-
-    /// Weighted means about the borders of buckets, of a quantity with these means over the buckets, in stretches given by the borders at
-    /// their ends: within as much of their reach as the stretch has on both sides. 0 elsewhere.
-    fn over(&self, borders: &[f64], values: &[f64], period: f64, stretches: &[[usize; 2]]) -> Vec<f64> {
-        let mut means = vec![0.0; borders.len()];
-        for [first, last] in stretches {
-            for place in *first..=*last {
-                let t = borders[place];
-                // Of one side alone it would lag or lead: towards an end the reach becomes shorter on both sides.
-                let half = (REACH * period).min(t - borders[*first]).min(borders[*last] - t);
-                means[place] = if half > 0.0 {
-                    let mut bucket = borders.partition_point(|border| *border <= t - half).max(1) - 1;
-                    let (mut sum, mut before) = (0.0, 0.0);
-                    while bucket < *last && borders[bucket] < t + half {
-                        let up_to = self.up_to((borders[bucket + 1] - t) / half);
-                        sum += values[bucket] * (up_to - before);
-                        (before, bucket) = (up_to, bucket + 1);
-                    }
-                    sum
-                } else if place == *first {
-                    values[place]
-                } else {
-                    values[place - 1]
-                };
-            }
-        }
-        means
-    }
-}
-
-/// A quantity at the borders of the buckets without vibrations of less than this period (s). `None` unless it rings: strays from what is
-/// left, and crosses it at least once in a period, on average. A slower vibration is seen as it is.
-pub(super) fn ringing(curves: &Curves, column: usize, period: f64) -> Option<Vec<f64>> {
-    let borders = curves.borders();
-    if !is_long(&borders) || period <= 0.0 {
-        return None;
-    }
-    let means = Weights::new().over(&borders, &curves.means(column), period, &[[0, borders.len() - 1]]);
-    let largest = means.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let own = curves.means(column);
-    // Two points of the curve lie in each bucket, after the one at the start.
-    let values = curves.curve(column);
-    let points = values[1..].chunks_exact(2).map(|pair| [pair[0], pair[1]]);
-    let (mut far, mut crossings, mut above) = (0, 0, None);
-    for (k, (pair, ends)) in points.zip(means.windows(2)).enumerate() {
-        let mean = 0.5 * (ends[0] + ends[1]);
-        far += usize::from(pair.iter().any(|x| (x - mean).abs() > STRAY * largest));
-        let now = own[k] > mean;
-        crossings += usize::from(above.is_some_and(|before: bool| before != now));
-        above = Some(now);
-        // A bucket of many steps: what moves through it has about the change of its means as range, what rings in it more.
-        let change = |other: Option<&f64>| other.map_or(0.0_f64, |other| (other - own[k]).abs());
-        let drift = change(own.get(k + 1)).max(change(k.checked_sub(1).and_then(|before| own.get(before))));
-        crossings += 2 * usize::from((pair[1] - pair[0]).abs() > RINGS * drift.max(STRAY * largest));
-    }
-    let periods = (borders[borders.len() - 1] - borders[0]) / period;
-    (far as f64 > LEAST * own.len() as f64 && crossings as f64 >= periods).then_some(means)
-}
-
-/// The largest value of a quantity that rings within half of this period (s) on either side, at the borders of the buckets: what stays of one without a
-/// sign, as a stress, of which a mean would say nothing. `None` unless it rings.
-pub(super) fn largest_about(curves: &Curves, column: usize, period: f64) -> Option<Vec<f64>> {
-    ringing(curves, column, period)?;
-    let borders = curves.borders();
-    let values = curves.curve(column);
-    let highest: Vec<f64> = values[1..].chunks_exact(2).map(|pair| pair[0].max(pair[1])).collect();
-    let about = |t: &f64| {
-        let [from, to] = [t - 0.5 * period, t + 0.5 * period];
-        let first = borders.partition_point(|border| *border <= from).saturating_sub(1);
-        let after = borders.partition_point(|border| *border < to).min(highest.len());
-        highest[first.min(after)..after].iter().copied().fold(f64::NEG_INFINITY, f64::max)
-    };
-    Some(borders.iter().map(about).collect())
 }
 
 #[cfg(test)]
@@ -225,14 +221,20 @@ mod tests {
         (curves, forces)
     }
 
+    /// Without impacts, and with the longest period.
+    fn plain(curves: &Curves) -> Filter {
+        Filter::with(longest(curves), &curves.borders(), &Jolts::default())
+    }
+
     #[test]
     fn the_mean_is_the_force_that_carries() {
         // 3.1 N with 1 N of ringing at 400 Hz.
         let (curves, forces) = run(|t| 3.1 + (2.0 * std::f64::consts::PI * 400.0 * t).sin());
-        let period = period(&curves, std::slice::from_ref(&forces.normal));
-        assert!((period - 0.02).abs() < 1e-12, "{period}");
-        let means = normal(&curves, &forces, period).unwrap();
-        assert!(means.iter().skip(20).rev().skip(20).all(|mean| (mean - 3.1).abs() < 0.1));
+        let filter = Filter::of(&curves, &Jolts::default(), std::slice::from_ref(&forces.normal));
+        assert!((filter.period - 0.02).abs() < 1e-12, "{filter:?}");
+        let means = filter.normal(&curves, &forces).unwrap();
+        // To the ends of the run.
+        assert!(means.iter().all(|mean| (mean - 3.1).abs() < 0.1), "{means:?}");
         assert_eq!(means.len(), curves.borders().len());
     }
 
@@ -240,7 +242,7 @@ mod tests {
     fn there_is_no_mean_before_a_contact_touches_or_after_it_has_left() {
         let ringing = |t: f64| 3.1 + (2.0 * std::f64::consts::PI * 400.0 * t).sin();
         let (curves, forces) = run(|t| if (0.3..0.7).contains(&t) { ringing(t) } else { 0.0 });
-        let means = normal(&curves, &forces, longest(&curves)).unwrap();
+        let means = plain(&curves).normal(&curves, &forces).unwrap();
         for (mean, t) in means.iter().zip(curves.borders()) {
             // To a bucket of two steps.
             let expected = if (0.296..=0.704).contains(&t) { 2.5..=3.7 } else { 0.0..=0.0 };
@@ -257,7 +259,7 @@ mod tests {
             k if k % 35 == 0 => 500.0,
             _ => 0.0,
         });
-        assert_eq!(normal(&curves, &forces, longest(&curves)), None);
+        assert_eq!(plain(&curves).normal(&curves, &forces), None);
     }
 
     #[test]
@@ -265,7 +267,7 @@ mod tests {
         let stress = |t: f64| (1.0 - 0.5 * t) * (2.0 * std::f64::consts::PI * 400.0 * t).sin().abs();
         let mut curves = Curves::new(400, 0.0, vec![0.0], 0);
         (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[stress(t)]));
-        let largest = largest_about(&curves, 0, 0.02).unwrap();
+        let largest = plain(&curves).largest_about(&curves, 0).unwrap();
         assert_eq!(largest.len(), curves.borders().len());
         for (largest, t) in largest.iter().zip(curves.borders()) {
             assert!((largest - (1.0 - 0.5 * t)).abs() < 0.02, "{largest} at {t}");
@@ -278,7 +280,7 @@ mod tests {
             let reaction = |t: f64| 75.0 + 500.0 * (2.0 * std::f64::consts::PI * frequency * t).sin();
             let mut curves = Curves::new(capacity, 0.0, vec![reaction(0.0)], 0);
             (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[reaction(t)]));
-            ringing(&curves, 0, longest(&curves))
+            plain(&curves).ringing(&curves, 0)
         };
         // In buckets of two steps, and of 64.
         for capacity in [10_000, 400] {
@@ -296,11 +298,11 @@ mod tests {
         let moment = |t: f64| 9.0 + 5.0 * (tau * slow * t).sin() + 4.0 * (tau * 400.0 * t).sin();
         let mut curves = Curves::new(10_000, 0.0, vec![moment(0.0)], 0);
         (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[moment(t)]));
-        let period = period(&curves, &[curves.means(0)]);
-        let means = ringing(&curves, 0, period).unwrap();
+        let filter = Filter::of(&curves, &Jolts::default(), &[curves.means(0)]);
+        let means = filter.ringing(&curves, 0).unwrap();
         let inner = &means[means.len() / 8..means.len() * 7 / 8];
         let (low, high) = inner.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
-        (0.5 * (high - low) / 5.0, period)
+        (0.5 * (high - low) / 5.0, filter.period)
     }
 
     #[test]
@@ -321,7 +323,7 @@ mod tests {
         };
         let mut curves = Curves::new(10_000, 0.0, vec![reaction(0.0)], 0);
         (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[reaction(t)]));
-        assert!(ringing(&curves, 0, period(&curves, &[curves.means(0)])).is_some());
+        assert!(Filter::of(&curves, &Jolts::default(), &[curves.means(0)]).ringing(&curves, 0).is_some());
     }
 
     #[test]
@@ -329,13 +331,56 @@ mod tests {
         let rising = |t: f64| 100.0 * t + 20.0 * (2.0 * std::f64::consts::PI * 400.0 * t).sin();
         let mut curves = Curves::new(10_000, 0.0, vec![rising(0.0)], 0);
         (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[rising(t)]));
-        let means = ringing(&curves, 0, longest(&curves)).unwrap();
+        let means = plain(&curves).ringing(&curves, 0).unwrap();
         assert!(means[0].abs() < 4.0, "{}", means[0]);
     }
 
     #[test]
     fn a_smooth_force_has_no_mean_beside_it() {
         let (curves, forces) = run(|t| 3.0 + t);
-        assert_eq!(normal(&curves, &forces, longest(&curves)), None);
+        assert_eq!(plain(&curves).normal(&curves, &forces), None);
+    }
+
+    fn jolts(impacts: &[f64]) -> Jolts {
+        Jolts { times: impacts.to_vec(), what: "impacts" }
+    }
+
+    /// A beam without load that rings from impacts on, by as much as `force` says, in 1 s.
+    fn struck(impacts: &[f64], force: impl Fn(f64) -> f64) -> Curves {
+        let raw = |t: f64| if impacts.iter().any(|impact| t >= impact - 1e-9) { force(t) } else { 0.0 };
+        let mut curves = Curves::new(2000, 0.0, vec![0.0], 0);
+        (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[raw(t)]));
+        curves
+    }
+
+    #[test]
+    fn nothing_changes_before_the_impact_that_causes_it() {
+        let tau = 2.0 * std::f64::consts::PI;
+        let ringing = |t: f64| 60.0 + 100.0 * (tau * 400.0 * t).sin() + 20.0 * (tau * 20.0 * t).cos();
+        let impacts = [0.2165, 0.6];
+        let curves = struck(&impacts, ringing);
+        let filter = Filter::of(&curves, &jolts(&impacts), &[curves.means(0)]);
+        let means = filter.ringing(&curves, 0).unwrap();
+        let largest = filter.largest_about(&curves, 0).unwrap();
+        for ((t, mean), largest) in curves.borders().into_iter().zip(means).zip(largest) {
+            if t < impacts[0] {
+                assert_eq!([mean, largest], [0.0; 2], "at {t}");
+            } else if t > impacts[0] + 1e-3 {
+                // Right before and after an impact, and at the end, a part of a fast period has a mean of its own.
+                let is_near = impacts.iter().chain(&[1.0]).any(|impact| (t - impact).abs() < 0.02);
+                let slow = 60.0 + 20.0 * (tau * 20.0 * t).cos();
+                assert!((mean - slow).abs() < if is_near { 15.0 } else { 2.0 }, "{mean}, not {slow} at {t}");
+            }
+        }
+        assert_eq!(filter.told(), "20 ms, not across impacts");
+    }
+
+    #[test]
+    fn means_reach_across_impacts_that_follow_each_other_closely() {
+        let impacts = [0.2, 0.205, 0.21, 0.5];
+        let filter = Filter::of(&struck(&impacts, |_| 1.0), &jolts(&impacts), &[]);
+        assert_eq!(filter.cuts.len(), 2);
+        assert_eq!(filter.told(), "20 ms, not across impacts further apart than that");
+        assert_eq!(plain(&struck(&[], |_| 1.0)).told(), "20 ms");
     }
 }

@@ -46,6 +46,24 @@ impl Link {
     }
 }
 
+/// Of some blocks, those through which a force goes on: of which two forces, opposed to each other, hold each of them up, as of a drum of a column. Their lines go
+/// straight from one centre of pressure to the other; by the block's centre they would be a zigzag that no force has. `links` are the blocks of each
+/// pair, and the force on the first one.
+pub(crate) fn passes_on(blocks: usize, links: &[(usize, Option<usize>, [f64; 2])]) -> Vec<bool> {
+    let mut forces: Vec<Vec<[f64; 2]>> = vec![Vec::new(); blocks];
+    for (block, other, force) in links {
+        forces[*block].push(*force);
+        if let Some(other) = other {
+            forces[*other].push(force.map(|x| -x));
+        }
+    }
+    let is_opposed = |[a, b]: [[f64; 2]; 2]| a[0] * b[0] + a[1] * b[1] < -OPPOSED * a[0].hypot(a[1]) * b[0].hypot(b[1]);
+    forces.iter().map(|forces| <[[f64; 2]; 2]>::try_from(&forces[..]).is_ok_and(is_opposed)).collect()
+}
+
+/// The cosine of the largest angle by which opposed forces may be off.
+const OPPOSED: f64 = 0.5;
+
 /// Adds links, by the number of their pair, to others that are in its order.
 fn join(into: &mut Vec<Link>, links: &[Link]) {
     for link in links {
@@ -172,6 +190,20 @@ mod tests {
         }
         frames.end(f64::from(steps), |_| {});
         (network, frames.rows().map(|row| row.0).collect())
+    }
+
+    #[test]
+    fn forces_go_straight_through_a_drum_and_not_through_a_lintel() {
+        // Block 0 on the ground, 1 on 0, 2 on both 1 and 3, which stands on the ground.
+        let up = |size: f64| [0.0, size];
+        let links = [
+            (0, None, up(5.0)),
+            (1, Some(0), up(4.0)),
+            (2, Some(1), up(3.0)),
+            (2, Some(3), up(2.9)),
+            (3, None, up(4.0)),
+        ];
+        assert_eq!(passes_on(4, &links), [true, true, false, true]);
     }
 
     #[test]

@@ -13,6 +13,9 @@ const ROOM: f64 = 0.25;
 /// A curve that stays within this part of its range of where it begins, or ends, is flat.
 const FLAT: f64 = 0.01;
 
+/// Curves that keep only the extremes of many steps need this many of these in a part of the run, not to be seen as polygons there.
+const SMOOTH: usize = 60;
+
 /// The part of a run on which its plots open, s.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct Opening {
@@ -25,7 +28,8 @@ pub(crate) struct Opening {
 }
 
 /// Where the plots open; none where something moves for more than a fifth of the run, and none of many bodies: the only motions that have plots of their own
-/// then are those of ground and supports. How ground moves counts only where nothing moves on it.
+/// then are those of ground and supports. How ground moves counts only where nothing moves on it. None, too, where the curves of a long run, or of many blocks, are
+/// too coarse to be seen from near.
 pub(crate) fn opening(recorder: &PageRecorder, panels: &Panels) -> Option<Opening> {
     if recorder.scenery.is_crowded() {
         return None;
@@ -40,6 +44,10 @@ pub(crate) fn opening(recorder: &PageRecorder, panels: &Panels) -> Option<Openin
     let moves = all.filter(|[from, to]| to > from && to - from <= SMALL * run)?;
     let room = ROOM * (moves[1] - moves[0]);
     let shown = [(moves[0] - room).max(*times.first()?), (moves[1] + room).min(*times.last()?)];
+    let parts = borders.windows(2).filter(|ends| ends[1] > shown[0] && ends[0] < shown[1]).count();
+    if panels.curves.is_thinned() && parts < SMOOTH {
+        return None;
+    }
     Some(Opening { moves, shown, on_ground })
 }
 

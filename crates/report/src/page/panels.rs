@@ -3,12 +3,15 @@
 
 use super::content::{LeftOut, ROUNDING, largest};
 use super::curves::{Curves, ForceCurve};
-use super::means;
+use super::jolts::Jolts;
+use super::means::Filter;
 use super::recorder::{NUMBERS, PageRecorder};
 use super::redundant::{Redundant, redundant};
 use super::scenery::ContactDrawn;
+use crate::with_digits;
 use std::ops::Range;
 
+mod coincident;
 mod energies;
 mod forces;
 mod motion;
@@ -135,6 +138,8 @@ pub(crate) struct PortraitLine {
     pub(crate) v: Vec<f64>,
     /// Which of its points are drawn strong; the others are pale.
     pub(crate) strong: Range<usize>,
+    /// On how many others it lies.
+    pub(crate) over: u8,
 }
 
 /// All that is drawn over time of a run, but contact forces, and what isn't.
@@ -163,7 +168,19 @@ pub(crate) struct Panels {
 
 impl Panels {
     pub(crate) fn of(recorder: &PageRecorder) -> Self {
-        let forces = |curves: &Curves| (0..recorder.scenery.points).map(|k| curves.forces(k)).collect::<Vec<_>>();
+        let forces = |curves: &Curves| {
+            let of = |point: usize| {
+                let from_first_step = |column: usize| {
+                    let mut course = curves.curve(column);
+                    // What a contact's force is before the first step is known from that alone.
+                    course[0] = course.get(1).copied().unwrap_or(0.0);
+                    course
+                };
+                let course = recorder.spring_column(point).map(|column| [column, column + 1].map(from_first_step));
+                Some(ForceCurve { course, ..curves.forces(point)? })
+            };
+            (0..recorder.scenery.points).map(of).collect::<Vec<_>>()
+        };
         let drawn = |curves: Curves| {
             let forces = forces(&curves);
             let mut panels = Self {
@@ -230,27 +247,26 @@ impl Panels {
         self.redundant[pair].shares
     }
 
-    /// The border between fast and slow vibrations of the normal forces that are drawn without the fast ones, s.
-    fn period_of_contacts(&self, recorder: &PageRecorder) -> f64 {
-        let ringing = recorder.scenery.contacts.iter().filter(|contact| contact.rings && !contact.has_duration);
-        let points = ringing.flat_map(|contact| &self.forces[contact.first..contact.first + contact.points.len()]);
-        let normal: Vec<Vec<f64>> = points.flatten().map(|forces| forces.normal.clone()).collect();
-        means::period(&self.curves, &normal)
+    /// The normal forces of contact points without their fast vibrations, N, at the borders of the buckets; none where they hardly differ. With what is
+    /// to be told of the vibrations taken away.
+    pub(crate) fn means_of_contacts(&self, recorder: &PageRecorder) -> (String, Vec<Option<Vec<f64>>>) {
+        // Springs make a force smooth, and without a beam nothing rings.
+        let ringing = || recorder.scenery.contacts.iter().filter(|contact| contact.rings && !contact.has_duration);
+        let points = |contact: &ContactDrawn| contact.first..contact.first + contact.points.len();
+        let forces = ringing().flat_map(|contact| &self.forces[points(contact)]).flatten();
+        let normal: Vec<Vec<f64>> = forces.map(|forces| forces.normal.clone()).collect();
+        let filter = Filter::of(&self.curves, &Jolts::of(recorder), &normal);
+        let mut means = vec![None; self.forces.len()];
+        for point in ringing().flat_map(points) {
+            means[point] = self.forces[point].as_ref().and_then(|forces| filter.normal(&self.curves, forces));
+        }
+        (filter.told(), means)
     }
 
-    /// The normal forces of contact points without their fast vibrations, N, at the borders of the buckets; none where they hardly differ. With the
-    /// period of the fast ones, s.
-    pub(crate) fn means_of_contacts(&self, recorder: &PageRecorder) -> (f64, Vec<Option<Vec<f64>>>) {
-        let period = self.period_of_contacts(recorder);
-        let mut means = vec![None; self.forces.len()];
-        // Springs make a force smooth, and without a beam nothing rings.
-        for contact in recorder.scenery.contacts.iter().filter(|contact| contact.rings && !contact.has_duration) {
-            for point in contact.first..contact.first + contact.points.len() {
-                means[point] =
-                    self.forces[point].as_ref().and_then(|forces| means::normal(&self.curves, forces, period));
-            }
-        }
-        (period, means)
+    /// What is to be told of the forces of springs: nothing where they are drawn step by step.
+    pub(crate) fn told_of_springs(&self) -> Option<String> {
+        let over = || with_digits(self.curves.longest_bucket(), "s", 2);
+        self.curves.is_thinned().then(|| format!("the least and the largest of every {}", over()))
     }
 
     /// Where the axes of a contact's normal and tangential forces end because peaks dwarf the rest, and the largest ones, N.
@@ -293,7 +309,9 @@ impl Panels {
     fn numbers(&self) -> usize {
         let lines = self.panels.iter().flat_map(|panel| &panel.lines).map(|line| line.y.len()).sum::<usize>();
         let portraits = self.portraits.iter().flat_map(|portrait| &portrait.lines).map(|line| 3 * line.t.len());
-        let forces = self.forces.iter().flatten().map(|forces| 3 * forces.normal.len() + forces.impacts.len());
+        let of_course = |forces: &ForceCurve| forces.course.iter().flatten().map(Vec::len).sum::<usize>();
+        let forces = self.forces.iter().flatten();
+        let forces = forces.map(|forces| 3 * forces.normal.len() + of_course(forces) + forces.impacts.len());
         lines + portraits.sum::<usize>() + forces.sum::<usize>() + 3 * self.curves.len()
     }
 

@@ -136,6 +136,8 @@ pub struct PageRecorder {
     bucket_capacity: usize,
     /// The scene's end, s.
     pub(crate) end: f64,
+    /// The contact points with springs, whose normal and tangential forces have columns of their own in the curves, before [`Self::sections`].
+    pub(crate) springs: Vec<usize>,
     /// What beams bear, after all other columns of the curves.
     pub(crate) sections: Vec<Column>,
     /// What beams bore in the whole run; nothing before its end.
@@ -167,7 +169,10 @@ impl PageRecorder {
         let beams = scene.beams.iter().zip(&layout.beams).enumerate();
         let sections = beams.flat_map(|(number, (of, place))| columns_of(number, of, place));
         let sections: Vec<Column> = sections.filter(|column| column.kind != Kind::Deflection).collect();
-        let columns = scenery.driven_column(scenery.driven.len()) + sections.len();
+        let with_springs = scenery.contacts.iter().filter(|contact| contact.has_duration);
+        let springs: Vec<usize> =
+            with_springs.flat_map(|contact| contact.first..contact.first + contact.points.len()).collect();
+        let columns = scenery.driven_column(scenery.driven.len()) + 2 * springs.len() + sections.len();
         let points = scenery.points;
         let even = |n: usize| n - n % 2;
         let capacity = |most: usize, width: usize| even((NUMBERS / width).clamp(10, most));
@@ -195,6 +200,7 @@ impl PageRecorder {
             layout: layout.clone(),
             bucket_capacity,
             end: scene.time.steps() as f64 * scene.time.step,
+            springs,
             sections,
             beams: Vec::new(),
             points_of_no_return: points_of_no_return(scene),
@@ -219,7 +225,17 @@ impl PageRecorder {
 
     /// The number of the first column of the curves that is of what beams bear.
     pub(crate) fn first_section(&self) -> usize {
+        self.first_spring() + 2 * self.springs.len()
+    }
+
+    /// The number of the first column of the curves that is of a contact with springs.
+    fn first_spring(&self) -> usize {
         self.scenery.driven_column(self.scenery.driven.len())
+    }
+
+    /// The column of a contact point's normal force, before that of the tangential one, if it has springs.
+    pub(crate) fn spring_column(&self, point: usize) -> Option<usize> {
+        Some(self.first_spring() + 2 * self.springs.binary_search(&point).ok()?)
     }
 
     /// What tells a curve of what beams bear from others of its kind: the place, and the beam where there are several.
@@ -326,6 +342,23 @@ impl PageRecorder {
         ]);
         for (out, driven) in rest[ENERGIES.len()..].chunks_exact_mut(MOTION_COLUMNS).zip(&self.scenery.driven) {
             out.copy_from_slice(&driven.values(state));
+        }
+    }
+
+    /// Takes the forces of springs: as they change through an impact, no peak of theirs is to be missed.
+    fn take_springs(&mut self, step: &StepReport<'_, 2>) {
+        if self.springs.is_empty() {
+            return;
+        }
+        let columns = self.first_spring()..self.first_section();
+        self.row[columns].fill(0.0);
+        let lasting = step.t_end - step.t_start;
+        for contact in step.active().flat_map(|part| part.contacts) {
+            let Some((pair, point)) = place(&self.layout, contact) else { continue };
+            let Some(point) = self.scenery.contacts.get(pair).map(|drawn| drawn.first + point) else { continue };
+            if let Some(column) = self.spring_column(point) {
+                self.row[column..].iter_mut().zip(&contact.p).for_each(|(force, impulse)| *force += impulse / lasting);
+            }
         }
     }
 
@@ -453,6 +486,7 @@ impl PageRecorder {
     /// Takes a step in, with the contacts that closed in it.
     pub(crate) fn see_step(&mut self, step: &StepReport<'_, 2>, state: &State, closed: &[Closed]) {
         self.take_row(state);
+        self.take_springs(step);
         self.kept.curves.enter(state.t, &self.row);
         self.take_orbits(state.t);
         self.take_contacts(step, closed);

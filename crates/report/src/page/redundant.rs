@@ -67,8 +67,12 @@ pub(super) fn redundant(recorder: &PageRecorder, curves: &Curves, forces: &[Opti
     };
     let buckets: Vec<usize> = (1..=LOOKS.min(buckets)).map(|look| look * last / LOOKS.min(buckets)).collect();
     let shares = |contact: &ContactDrawn, bucket: usize| {
-        let sticking = states(contact, bucket).into_iter().filter(|state| *state == ContactState::Stick).count();
-        sticking > 1 && contact.has_friction && !contact.has_duration
+        let states = states(contact, bucket);
+        let sticking = states.iter().filter(|state| **state == ContactState::Stick).count();
+        let pressing = states.iter().filter(|state| **state != ContactState::Open).count();
+        // The fibre of a beam takes one foot to the limit of friction while the other holds the block.
+        let sharing = if contact.beam.is_some() && sticking > 0 { pressing } else { sticking };
+        sharing > 1 && contact.has_friction && !contact.has_duration
     };
     let looks: Vec<Vec<bool>> = buckets
         .iter()

@@ -75,7 +75,7 @@ fn the_network_has_the_impulses_of_contacts_csv() {
         let step = (t[picture] * 1e3).round() as u64;
         let mut pair = 0;
         for link in unpacked(links.as_str().unwrap()).chunks(4) {
-            pair += link[0] as usize;
+            pair += link[0] as usize / 4;
             let shown = link[1] as f64 / 4095.0 * largest[picture];
             let bodies = network["pairs"][pair].as_array().unwrap();
             let first = names[bodies[0].as_u64().unwrap() as usize];

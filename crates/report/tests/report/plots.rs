@@ -83,6 +83,10 @@ fn a_tangential_force_that_feet_share_in_one_of_many_ways_is_drawn_as_their_sum(
     // A short rest before a column of drums is shaken is enough for a square wave between the feet of its lowest drum.
     let drums = crate::page::run("drums-at-rest", &scenario_text("column-of-drums"));
     assert!(data(&drums.html)["forces"]["shares"].as_array().unwrap().contains(&0.into()));
+    // One foot slips to and fro with the fibre of the beam, while the plate lies still on it.
+    let plate = scenario_text("two-blocks-on-beam").replace("end    = \"0.5 s\"", "end    = \"60 ms\"");
+    let plate = crate::page::run("plate-on-beam", &plate);
+    assert!(data(&plate.html)["forces"]["shares"].as_array().unwrap().contains(&0.into()));
     // So is the rest of a block on a beam, whose vibrations decide the shares.
     let standing = scenario_text("free-rocking-on-beam").replacen("tilt     = \"5 deg\"", "tilt     = \"0 deg\"", 1);
     assert!(standing.contains("0 deg"));
@@ -100,6 +104,81 @@ fn the_largest_shape_is_near_the_largest_deflection_where_pictures_are_several_s
     let short = scenario_text("free-rocking-on-beam").replacen("end  = \"0.5 s\"", "end  = \"0.1 s\"", 1);
     let whole = run("shapes-of-all-steps", &short).html;
     assert!(whole.contains("largest, t = ") && !whole.contains("near the largest"));
+}
+
+#[test]
+fn the_peak_of_a_compliant_contact_is_plotted_as_large_as_it_is() {
+    let text = format!("{}\n[output]\nevery = '50 us'\n", scenario_text("compliant-drop"));
+    let run = run("compliant-peak", &text);
+    let written = table(&run.folder.join("contacts.csv"));
+    let most = |values: &[f64]| values.iter().copied().filter(|x| x.is_finite()).fold(0.0, f64::max);
+    let page = data(&run.html);
+    let points = page["forces"]["points"].as_array().unwrap();
+    let drawn = points.iter().map(|point| most(&numbers(&point["course"][0]["y"]))).fold(0.0, f64::max);
+    let peak = most(column(&written, "p_n")) / 50e-6;
+    assert!((drawn / peak - 1.0).abs() < 1e-3, "{drawn} N, not {peak} N");
+    // 20 000 steps are more than are drawn one by one.
+    assert_eq!(page["forces"]["springs"], "the least and the largest of every 800 µs");
+    let (_, svg) = figures(&run.page).into_iter().find(|(file, _)| file == "contact_forces.svg").unwrap();
+    assert!(svg.contains("the least and the largest of every"));
+}
+
+#[test]
+fn what_rolls_has_an_axis_of_its_own_beside_what_rocks() {
+    let text = "ground = {}\n[time]\nend = '0.6 s'\nstep = '1 ms'\n[material.stone]\ndensity = '2400 kg/m^3'\n\
+        [block.statue]\nmaterial = 'stone'\nwidth = '30 cm'\nheight = '1 m'\ndepth = '30 cm'\non = 'ground'\nat = '0 m'\ntilt = '5 deg'\n\
+        [block.ball]\nmaterial = 'stone'\nradius = '8 cm'\ndepth = '16 cm'\non = 'ground'\nat = '2 m'\nvelocity = ['2 m/s', '0 m/s']\n\
+        [contact.g]\nbetween = ['*', 'ground']\nfriction = 0.6\n";
+    let page = data(&run("ball-beside-statue", text).html);
+    let of = |id: &str| {
+        panel(&page, id).unwrap()["series"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|one| one["index"].as_u64().unwrap())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!([of("phi"), of("omega"), of("phi_rolling"), of("omega_rolling")], [[0], [0], [1], [1]]);
+    let portraits: Vec<&str> =
+        page["portraits"].as_array().unwrap().iter().map(|one| one["id"].as_str().unwrap()).collect();
+    assert_eq!(portraits, ["phase", "phase_x"]);
+    // Alone it has the usual one.
+    let alone = text.split("[block.statue]").next().unwrap().to_owned()
+        + "[block.ball]"
+        + text.split("[block.ball]").nth(1).unwrap();
+    let page = data(&run("ball-alone", &alone).html);
+    assert!(panel(&page, "phi").is_some() && panel(&page, "phi_rolling").is_none());
+}
+
+#[test]
+fn a_support_in_the_middle_of_a_beam_is_no_midspan() {
+    let short = scenario_text("two-span-beam").replace("end  = \"1.5 s\"", "end  = \"0.2 s\"");
+    let labels = |text: &str| {
+        let page = data(&run("two-spans", text).html);
+        let series = panel(&page, "w_mid").unwrap()["series"].as_array().unwrap().clone();
+        series.iter().map(|one| one["label"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert!(labels(&short).contains(&"support, 8 m".to_owned()));
+    assert!(labels(&short.replace("at     = \"8 m\"", "at     = \"6 m\"")).contains(&"middle, 8 m".to_owned()));
+    // Of three spans it is that of the second one.
+    let three = short.replace("at     = \"8 m\"", "at     = \"6 m\"")
+        + "[beam.bridge.support.other]\nat = '10 m'\nspring = '50 MN/m'\n";
+    assert!(labels(&three).contains(&"midspan, 8 m".to_owned()));
+}
+
+#[test]
+fn plots_open_on_no_part_of_which_they_have_only_a_few_extremes() {
+    // They fall within the first twentieth of a second of ten.
+    let text = |step: &str| {
+        format!(
+            "ground = {{}}\n[time]\nend = '10 s'\nstep = '{step}'\n[material.stone]\ndensity = '2400 kg/m^3'\n\
+         [block.one]\nmaterial = 'stone'\nwidth = '10 cm'\nheight = '10 cm'\ndepth = '10 cm'\nposition = ['0 m', '6 cm']\n\
+         repeat = {{ count = 4, shift = ['20 cm', '0 cm'] }}\n[contact.g]\nbetween = ['*', 'ground']\nfriction = 0.6\n"
+        )
+    };
+    let opens = |step: &str| !data(&run("opening", &text(step)).html)["moving"].is_null();
+    assert!(opens("5 ms"), "every step is drawn");
+    assert!(!opens("100 us"), "a few points of each curve");
 }
 
 #[test]
@@ -205,7 +284,7 @@ fn every_probe_has_its_curve_unless_it_is_rounding() {
     let labels: Vec<&str> =
         deflections["series"].as_array().unwrap().iter().map(|series| series["label"].as_str().unwrap()).collect();
     // The right end is a support: it doesn't move.
-    assert_eq!(labels, ["midspan, 300 mm", "150 mm", "450 mm"]);
+    assert_eq!(labels, ["middle, 300 mm", "150 mm", "450 mm"]);
     assert!(run.html.contains("w at the probe 600\u{a0}mm (0)"));
     assert!(run.html.contains("id=\"shapes\""));
     let names: Vec<String> = figures(&run.page).into_iter().map(|(file, _)| file).collect();

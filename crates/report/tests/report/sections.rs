@@ -214,8 +214,11 @@ fn reactions_that_ring_are_pale_behind_their_means() {
     assert_eq!([raw.len(), means.len()], [4, 4]);
     assert_eq!(series.iter().position(|line| line["raw"] != true), Some(4), "what is pale lies behind");
     assert!(means.iter().all(|line| line["label"] != "" && line["at_borders"] == true));
-    let note =
-        |what: &str| format!("pale: all steps; strong: {what} 10 ms; peaks after impacts depend on step and elements");
+    let note = |what: &str| {
+        format!(
+            "pale: all steps; strong: {what} 10 ms, not across impacts further apart than that; peaks after impacts depend on step and elements"
+        )
+    };
     assert_eq!(reactions["note"], note("without vibrations of periods below"));
     let range =
         |lines: &[&Value]| lines.iter().flat_map(|line| numbers(&line["y"])).fold(0.0_f64, |most, y| most.max(y.abs()));

@@ -28,6 +28,8 @@ struct Point {
     scheme: usize,
     /// Whether only scheme and step are changed.
     plain: bool,
+    /// Whether it has warnings, and so isn't advised.
+    warned: bool,
     /// Number of its row.
     row: usize,
 }
@@ -74,6 +76,7 @@ fn points(study: &Tradeoff, quantity: Quantity) -> Vec<Point> {
             error: error.max(LEAST),
             scheme: axes.scheme.options.iter().position(|option| *option == scheme)?,
             plain: axes.grid.iter().chain(&axes.others).all(|axis| axis.part_of(&row.setting).is_none()),
+            warned: study.is_warned(row),
             row: number,
         })
     };
@@ -108,13 +111,19 @@ fn figure(study: &Tradeoff, quantity: Quantity, points: &[Point], has_legend: bo
     let steps = pareto_front(&all).into_iter().map(|k| all[k]);
     let mut series = vec![Series::staircase(named("least error within the time"), steps, x.ends().1).number(BLACK)];
     for (number, name) in schemes(study).into_iter().enumerate() {
-        let of = |plain: bool| {
-            let ours = points.iter().filter(move |point| point.scheme == number && point.plain == plain);
+        let of = |plain: bool, warned: bool| {
+            let ours =
+                points.iter().filter(move |point| (point.scheme, point.plain, point.warned) == (number, plain, warned));
             ours.map(move |point| (ms(point), point.error))
         };
         let mark = Mark::of(number);
-        series.push(Series::marks(named(name), of(true), mark).number(number));
-        series.push(Series::marks("", of(false), mark).number(number).hollow());
+        series.push(Series::marks(named(name), of(true, false), mark).number(number));
+        series.push(Series::marks("", of(false, false), mark).number(number).hollow());
+        series.push(Series::marks("", of(true, true), mark).number(number).faint());
+        series.push(Series::marks("", of(false, true), mark).number(number).hollow().faint());
+    }
+    if points.iter().any(|point| point.warned) {
+        series.push(Series::marks(named("pale: with warnings, not advised"), [], Mark::Circle).number(BLACK).faint());
     }
     series.push(Series::marks(named("hollow: other keys changed too"), [], Mark::Circle).number(BLACK).hollow());
     let mut panel =

@@ -83,6 +83,12 @@ fn legend(html: &mut String, study: &Tradeoff) {
             escaped(name)
         );
     }
+    if study.rows.iter().any(|row| row.measured().is_some() && study.is_warned(row)) {
+        html.push_str(
+            "<li class=\"key\"><svg viewBox=\"0 0 12 12\" aria-hidden=\"true\" style=\"fill: var(--fg); fill-opacity: .3\"><circle cx=\"6\" cy=\"6\" \
+             r=\"4\"/></svg>pale: with warnings, not advised</li>\n",
+        );
+    }
     html.push_str(
         "<li class=\"key\"><svg viewBox=\"0 0 12 12\" aria-hidden=\"true\" style=\"fill: none; stroke: var(--fg)\"><circle cx=\"6\" cy=\"6\" \
          r=\"4\"/></svg>hollow: other keys changed too</li>\n</ul>\n",

@@ -4,6 +4,7 @@ use super::front;
 use super::html::{capitalised, command_words, with_code};
 use super::sentences::{NOTHING_MOVES, advised, command};
 use super::{duration, findings, percent, pruning, short};
+use crate::row::unbeaten;
 use crate::{Quantity, Row, Tradeoff};
 use std::fmt::Write;
 use teeter_plot::{AxisError, escaped};
@@ -98,9 +99,10 @@ impl Page<'_> {
         }
         html.push_str(
             "<section id=\"pareto\" class=\"panel\" aria-labelledby=\"pareto-title\"><h2 id=\"pareto-title\">The Pareto front, and what to run for each of its points</h2>\n\
-             <p class=\"note\">Settings that none tried beats in both accuracy and counted work; cheapest first, by counted work: measured CPU times may order them otherwise.</p>\n<ol>\n",
+             <p class=\"note\">Settings that none tried beats in both accuracy and counted work, without those that another of them beats in both of the numbers below; \
+             cheapest first.</p>\n<ol>\n",
         );
-        for &number in &self.study.front {
+        for number in unbeaten(&self.study.front, &self.study.rows, self.study.bar()) {
             let row = &self.study.rows[number];
             let time = row.measured().or(row.modelled()).map_or_else(String::new, duration);
             let kind = if row.measured().is_some() { "of CPU time" } else { "by counted work" };
@@ -111,7 +113,7 @@ impl Page<'_> {
                 Some(error) => format!("{} off, ", percent(error)),
                 None => String::new(),
             };
-            let warned = if row.warned().is_empty() { "" } else { ", with warnings" };
+            let warned = if self.study.is_warned(row) { ", with warnings" } else { "" };
             let _ = writeln!(html, "<li>{accuracy}{time} {kind}{warned}: <code>{}</code></li>", self.command(row));
         }
         html.push_str("</ol></section>\n");

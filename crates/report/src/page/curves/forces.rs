@@ -9,6 +9,8 @@ pub(crate) struct ForceCurve {
     pub(crate) normal: Vec<f64>,
     /// Mean tangential force, N, alike.
     pub(crate) tangential: Vec<f64>,
+    /// Of springs: their normal and their tangential force, N, at the times of [`Curves::curve`](super::Curves::curve), with all their peaks.
+    pub(crate) course: Option<[Vec<f64>; 2]>,
     /// Tangential displacement while it pressed, from the start to the end of the bucket, m.
     pub(crate) slip: Vec<f64>,
     /// The state in most of the steps in which it presses, however few these are.
@@ -34,6 +36,14 @@ pub(crate) enum Does {
 }
 
 impl ForceCurve {
+    /// Its normal (0) or tangential (1) force as it is drawn, N: of springs the course, of others means.
+    pub(crate) fn drawn(&self, part: usize) -> &[f64] {
+        match &self.course {
+            Some(course) => &course[part],
+            None => [&self.normal, &self.tangential][part],
+        }
+    }
+
     /// What it does in a bucket. An impact between two steps in which it is open is no stretch of sticking.
     pub(crate) fn does(&self, bucket: usize) -> Does {
         match (self.usual[bucket], self.state[bucket]) {
@@ -90,6 +100,7 @@ mod tests {
             let mut forces = ForceCurve {
                 normal: normal.to_vec(),
                 tangential: vec![0.0; 6],
+                course: None,
                 slip: vec![0.0; 6],
                 state: vec![ContactState::Stick; 6],
                 usual: Vec::new(),
@@ -118,6 +129,7 @@ mod tests {
             let mut forces = ForceCurve {
                 normal: vec![1.0; 6],
                 tangential: vec![0.0; 6],
+                course: None,
                 slip: slip.to_vec(),
                 state: vec![Slip, Slip, Open, Stick, Slip, Slip],
                 usual: Vec::new(),

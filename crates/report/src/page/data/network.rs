@@ -1,7 +1,7 @@
 //! The network of contact forces, picture by picture.
 
 use super::digits;
-use crate::page::network::Link;
+use crate::page::network::{Link, passes_on};
 use crate::page::packed::Packed;
 use crate::page::recorder::PageRecorder;
 use serde::Serialize;
@@ -9,7 +9,8 @@ use teeter_scenario::scene::SupportingBody;
 
 /// The network of contact forces: for each picture the links since the one before, each as the difference of its pair's
 /// number in `pairs` from that of the link before, its force in 4095ths of `largest` and the centre of pressure in the
-/// first body's own coordinates, in 1000ths of its reach.
+/// first body's own coordinates, in 1000ths of its reach. The difference comes times four, with 1 where the force goes on straight through the first
+/// body, and 2 where it does through the other one.
 #[derive(Serialize)]
 pub(super) struct NetworkData {
     /// The bodies of each pair: block and block, or −1 for ground, −2 for the first beam and so on.
@@ -46,16 +47,24 @@ pub(super) fn network(recorder: &PageRecorder) -> NetworkData {
         let size = |link: &Link| link.impulse[0].hypot(link.impulse[1]) / duration;
         let largest = links.iter().map(size).fold(0.0, f64::max);
         let (mut packed, mut before) = (Packed::default(), 0);
+        let drawn = links.iter().filter_map(|link| {
+            let (block, other) = scenery.bodies_of(link.pair).filter(|_| size(link) * FORCE_STEPS >= 0.5 * largest)?;
+            Some((block, if let SupportingBody::Block(other) = other { Some(other) } else { None }, link.impulse))
+        });
+        let passes_on = passes_on(scenery.blocks.len(), &drawn.collect::<Vec<_>>());
         for link in links {
             let (Ok(number), Some(place)) = (numbers.binary_search(&link.pair), link.place()) else { continue };
             let force = (size(link) / largest * FORCE_STEPS).round() as u64;
             if force == 0 {
                 continue;
             }
-            packed.push((number - before) as u64);
+            let (block, other) = data.pairs[number];
+            let through = |block: usize| passes_on[block] && !scenery.blocks[block].driven;
+            let flags = [through(block), usize::try_from(other).is_ok_and(through)].map(u64::from);
+            packed.push(4 * (number - before) as u64 + flags[0] + 2 * flags[1]);
             before = number;
             packed.push(force);
-            let reach = scenery.blocks[data.pairs[number].0].reach;
+            let reach = scenery.blocks[block].reach;
             place.into_iter().for_each(|x| packed.push_signed((x / reach * PLACE_STEPS).round() as i64));
         }
         data.largest.push(digits(largest));

@@ -3,7 +3,7 @@
 use super::column::{Column, SEEN, SEEN_BELOW_PEAKS};
 use super::{digits, time};
 use crate::page::curves::Does;
-use crate::page::panels::{Line, Panels, Place, unseen_slip};
+use crate::page::panels::{Line, Panels, Place, Source, unseen_slip};
 use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, PageRecorder, coordinate_in};
 use crate::page::scenery::ContactDrawn;
 use crate::with_digits;
@@ -153,6 +153,8 @@ struct PortraitSeries {
     /// The first point that is drawn strong and the first behind them, if not all are.
     #[serde(skip_serializing_if = "Option::is_none")]
     strong: Option<[usize; 2]>,
+    /// On how many others it lies.
+    over: u8,
     t: Column,
     x: Column,
     y: Column,
@@ -166,10 +168,13 @@ pub(super) struct ForceData {
     names: Vec<String>,
     /// Of the units in which normal and tangential forces are plotted, by contacts: the prefix, and by what N are multiplied.
     units: Vec<[(&'static str, f64); 2]>,
-    /// The period of the vibrations of which `mean` has only the slower ones, with its unit.
+    /// The period of the vibrations of which `mean` has only the slower ones, with its unit, and how far means reach.
     period: String,
     /// The longest time whose mean a force is, with its unit.
     bucket: String,
+    /// What the plots of forces of springs show, if not each step.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    springs: Option<String>,
     /// The unit of `impacts`: the prefix, and by what N s are multiplied.
     impulse_unit: (&'static str, f64),
     /// Where the axes of normal and tangential forces end if peaks are cut, by contacts, in their units.
@@ -203,6 +208,9 @@ struct PointForces {
     #[serde(skip_serializing_if = "Option::is_none")]
     mean: Option<Column>,
     tangential: Column,
+    /// Of springs: both forces at the times of the curves, as they are plotted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    course: Option<[SeriesData; 2]>,
     /// The largest normal impulse of an impact, N s.
     #[serde(skip_serializing_if = "Option::is_none")]
     impacts: Option<Column>,
@@ -248,7 +256,7 @@ pub(super) fn portraits(panels: &Panels) -> Vec<PortraitData> {
                 let [x, y] = [&line.x, &line.v].map(|values| Column::of(values, SEEN));
                 let t = Column::of(&line.t, SEEN_BELOW_PEAKS);
                 let strong = Some([line.strong.start, line.strong.end]).filter(|_| line.strong.len() < line.t.len());
-                PortraitSeries { label: line.label.clone(), index: line.number, strong, t, x, y }
+                PortraitSeries { label: line.label.clone(), index: line.number, strong, over: line.over, t, x, y }
             })
             .collect(),
     };
@@ -278,6 +286,21 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
             normal: Column::of(&forces.normal, SEEN_BELOW_PEAKS),
             mean: means[drawn.first + point].as_ref().map(|means| Column::of(means, SEEN)),
             tangential: Column::of(&forces.tangential, SEEN_BELOW_PEAKS),
+            course: forces.course.as_ref().and_then(|course| {
+                let column = recorder.spring_column(drawn.first + point)?;
+                let of = |part: usize| {
+                    let source = Source { column: column + part, zero: 0.0, factor: 1.0 };
+                    let line = Line {
+                        label: String::new(),
+                        number: 0,
+                        y: course[part].clone(),
+                        is_raw: false,
+                        of: Some(source),
+                    };
+                    SeriesData::of(&line, recorder, panels, 0.0, SEEN)
+                };
+                Some([of(0), of(1)])
+            }),
             impacts: (!forces.impacts.is_empty()).then(|| Column::of(&forces.impacts, SEEN)),
             state: state.collect(),
         })
@@ -291,8 +314,9 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         names: recorder.scenery.contacts.iter().map(|contact| recorder.pair_name(contact)).collect(),
         borders: panels.curves.borders().into_iter().map(time).collect(),
         units: panels.force_units.clone(),
-        period: with_digits(period, "s", 3),
+        period,
         bucket: with_digits(panels.curves.longest_bucket(), "s", 2),
+        springs: panels.told_of_springs().filter(|_| !recorder.springs.is_empty()),
         impulse_unit: panels.impulse_unit,
         cuts: (0..recorder.scenery.contacts.len()).map(cuts).collect(),
         forceless: (0..panels.normal.len()).filter(|pair| !panels.normal[*pair]).collect(),

@@ -1,13 +1,14 @@
 //! Plots of how blocks, beams, ground and supports move.
 
-use super::{Curves, Line, Measure, Panels, Place, Portrait, PortraitLine, Source, TimePanel};
+use super::{Curves, Line, Measure, Panels, Place, Portrait, PortraitLine, Source, TimePanel, coincident};
 use crate::driven::Driven;
 use crate::page::content::{ROUNDING, holds, largest, travel};
 use crate::page::orbit::Point;
 use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, PageRecorder, coordinate_in};
-use crate::page::scenery::FREE;
+use crate::page::scenery::{BeamDrawn, FREE};
 use crate::{shortest, with_digits};
 use std::collections::BTreeSet;
+use std::f64::consts::PI;
 use std::ops::Range;
 
 /// A coordinate of a block.
@@ -67,7 +68,6 @@ const TURNS: f64 = 0.01;
 impl Panels {
     /// x, y, φ of the blocks and their velocities, of those that move in them.
     pub(super) fn motions(&mut self, recorder: &PageRecorder) {
-        let display = recorder.scenery.display;
         // First of all how it rocks.
         for c in [PHI, 0, 1] {
             let coordinate = &COORDINATES[c];
@@ -81,69 +81,82 @@ impl Panels {
                     self.leave_out(coordinate.of, Some((block.name.clone(), "blocks")), [travel(&values), scale], unit);
                 }
             }
-            if moving.is_empty() {
-                continue;
-            }
-            let reach = recorder.scenery.blocks.iter().fold(0.0, |most: f64, block| most.max(block.reach));
-            let far = moving.iter().map(|(_, values)| travel(values)).fold(0.0, f64::max);
-            // Blocks that stand far apart would all look still.
-            let from_start = c != PHI && moving.len() > 1 && far < FAR * extent(&moving);
-            let zero = |k: usize| match recorder.kept.frames.rows().next() {
-                Some((_, start)) if from_start => coordinate_in(recorder, start, k, c),
-                _ => 0.0,
-            };
-            // Lengths are in metres until the units of the page are chosen.
-            let (unit, factor) =
-                if c == PHI { (display.angle.symbol(), display.angle.per_radian()) } else { ("", 1.0) };
-            let measures = if c == PHI { [Measure::Own; 2] } else { [Measure::Position, Measure::Velocity] };
-            // Wide enough that what is at rest looks so, and rounding on top of it isn't seen.
-            let least = if c == PHI { 4e-5 * factor } else { 1e-4 * reach * factor };
-            let line = |curves: &Curves, k: usize, c: usize, zero: f64, factor: f64| {
-                let source = Source { column: BLOCK_COLUMNS * k + c, zero, factor };
-                Line::from_zero(curves, source, block_label(recorder, k), k)
-            };
-            let guides = if c == PHI { critical_angles(recorder, &moving, factor) } else { Vec::new() };
-            let panel =
-                |id: &str, title: &str, (measure, unit): (Measure, String), lines, guides, least, note| TimePanel {
-                    id: id.to_owned(),
-                    note,
-                    of_contact: None,
-                    title: title.to_owned(),
-                    description: format!("{title} of the blocks over time"),
-                    measure,
-                    unit,
-                    least,
-                    guides,
-                    cut: false,
-                    place: Place::Motion,
-                    lines,
-                };
-            let lines = moving.iter().map(|(k, _)| line(&self.curves, *k, c, zero(*k), factor)).collect();
-            let on = from_ground(recorder, &self.curves, c);
-            let name = format!("{}{on}", if from_start { coordinate.from_start } else { coordinate.name });
-            let size = |x: f64| match c {
-                PHI => format!("{}\u{a0}{unit}", shortest(x * factor, 2)),
-                _ => with_digits(x, "m", 2),
-            };
-            let note = unseen(moving.iter().map(|(k, values)| (block_label(recorder, *k), travel(values))), size);
-            self.panels.push(panel(coordinate.id, &name, (measures[0], unit.to_owned()), lines, guides, least, note));
-            let lines = moving.iter().map(|(k, _)| line(&self.curves, *k, 3 + c, 0.0, 1.0)).collect();
-            let least = if c == PHI { 2e-3 } else { 1e-4 * reach };
-            let unit = (measures[1], "rad/s".to_owned());
-            let rates = moving.iter().map(|(k, _)| {
-                (block_label(recorder, *k), largest(&self.curves.curve(BLOCK_COLUMNS * k + BLOCK_COORDINATES + c)))
-            });
-            let note = unseen(rates, |x| with_digits(x, if c == PHI { "rad/s" } else { "m/s" }, 2));
-            self.panels.push(panel(
-                coordinate.velocity_id,
-                &format!("{}{on}", coordinate.velocity_name),
-                unit,
-                lines,
-                Vec::new(),
-                least,
-                note,
-            ));
+            // A ball that rolls by would make the rocking of all others a line.
+            let rolls = |(_, values): &(usize, Vec<f64>)| c == PHI && travel(values) > PI;
+            let (rolling, standing): (Vec<_>, Vec<_>) = moving.into_iter().partition(rolls);
+            let beside = !standing.is_empty();
+            self.motion(recorder, c, standing, false);
+            self.motion(recorder, c, rolling, beside);
         }
+    }
+
+    /// A coordinate of blocks that move in it, and its velocity; of some that roll, or turn over, beside others that don't.
+    fn motion(&mut self, recorder: &PageRecorder, c: usize, moving: Vec<(usize, Vec<f64>)>, rolls: bool) {
+        if moving.is_empty() {
+            return;
+        }
+        let display = recorder.scenery.display;
+        let coordinate = &COORDINATES[c];
+        let [id, velocity_id] = [coordinate.id, coordinate.velocity_id]
+            .map(|id| if rolls { format!("{id}_rolling") } else { id.to_owned() });
+        let of_whom = if rolls { ", of what turns by more than 180°" } else { "" };
+        let reach = recorder.scenery.blocks.iter().fold(0.0, |most: f64, block| most.max(block.reach));
+        let far = moving.iter().map(|(_, values)| travel(values)).fold(0.0, f64::max);
+        // Blocks that stand far apart would all look still.
+        let from_start = c != PHI && moving.len() > 1 && far < FAR * extent(&moving);
+        let zero = |k: usize| match recorder.kept.frames.rows().next() {
+            Some((_, start)) if from_start => coordinate_in(recorder, start, k, c),
+            _ => 0.0,
+        };
+        // Lengths are in metres until the units of the page are chosen.
+        let (unit, factor) = if c == PHI { (display.angle.symbol(), display.angle.per_radian()) } else { ("", 1.0) };
+        let measures = if c == PHI { [Measure::Own; 2] } else { [Measure::Position, Measure::Velocity] };
+        // Wide enough that what is at rest looks so, and rounding on top of it isn't seen.
+        let least = if c == PHI { 4e-5 * factor } else { 1e-4 * reach * factor };
+        let line = |curves: &Curves, k: usize, c: usize, zero: f64, factor: f64| {
+            let source = Source { column: BLOCK_COLUMNS * k + c, zero, factor };
+            Line::from_zero(curves, source, block_label(recorder, k), k)
+        };
+        let guides = if c == PHI { critical_angles(recorder, &moving, factor) } else { Vec::new() };
+        let panel = |id: &str, title: &str, (measure, unit): (Measure, String), lines, guides, least, note| TimePanel {
+            id: id.to_owned(),
+            note,
+            of_contact: None,
+            title: title.to_owned(),
+            description: format!("{title} of the blocks over time"),
+            measure,
+            unit,
+            least,
+            guides,
+            cut: false,
+            place: Place::Motion,
+            lines,
+        };
+        let lines = moving.iter().map(|(k, _)| line(&self.curves, *k, c, zero(*k), factor)).collect();
+        let on = from_ground(recorder, &self.curves, c);
+        let name = format!("{}{on}{of_whom}", if from_start { coordinate.from_start } else { coordinate.name });
+        let size = |x: f64| match c {
+            PHI => format!("{}\u{a0}{unit}", shortest(x * factor, 2)),
+            _ => with_digits(x, "m", 2),
+        };
+        let note = unseen(moving.iter().map(|(k, values)| (block_label(recorder, *k), travel(values))), size);
+        self.panels.push(panel(&id, &name, (measures[0], unit.to_owned()), lines, guides, least, note));
+        let lines = moving.iter().map(|(k, _)| line(&self.curves, *k, 3 + c, 0.0, 1.0)).collect();
+        let least = if c == PHI { 2e-3 } else { 1e-4 * reach };
+        let unit = (measures[1], "rad/s".to_owned());
+        let rates = moving.iter().map(|(k, _)| {
+            (block_label(recorder, *k), largest(&self.curves.curve(BLOCK_COLUMNS * k + BLOCK_COORDINATES + c)))
+        });
+        let note = unseen(rates, |x| with_digits(x, if c == PHI { "rad/s" } else { "m/s" }, 2));
+        self.panels.push(panel(
+            &velocity_id,
+            &format!("{}{on}{of_whom}", coordinate.velocity_name),
+            unit,
+            lines,
+            Vec::new(),
+            least,
+            note,
+        ));
     }
 
     /// The deflections of the beams at midspan and at their probes.
@@ -154,7 +167,7 @@ impl Panels {
         let (mut drawn, mut elsewhere) = (Vec::new(), 0);
         for (number, beam) in scenery.beams.iter().enumerate() {
             let first = scenery.beam_column(number);
-            let middle = format!("midspan, {}", recorder.place(0.5 * beam.span));
+            let middle = format!("{}, {}", middle_word(beam), recorder.place(0.5 * beam.span));
             let place = |x: f64| {
                 let end = [0.0, beam.span].iter().zip(beam.supports).any(|(end, support)| *end == x && support == FREE);
                 format!("{}{}", if end { "free end, " } else { "" }, recorder.place(x))
@@ -187,7 +200,7 @@ impl Panels {
                 if several { format!("of {}, which no support holds, ", free.join(", ")) } else { String::new() };
             format!("{holds}measured from the line through the ends of the beam")
         });
-        let only_middle = drawn.len() == 1 && !several && drawn[0].0.starts_with("midspan");
+        let only_middle = drawn.len() == 1 && !several && drawn[0].0.starts_with(MIDSPAN);
         let lines = drawn.into_iter().map(|(label, column, number)| {
             let label = if only_middle { String::new() } else { label };
             Line::of(&self.curves, column, 1.0, label, number)
@@ -284,11 +297,15 @@ impl Panels {
     pub(super) fn portraits(&mut self, recorder: &PageRecorder) {
         let display = recorder.scenery.display;
         let moves = |k: usize, c: usize| travel(&self.curves.curve(BLOCK_COLUMNS * k + c));
+        let rocks = |k: usize| holds(moves(k, PHI), 1.0) && moves(k, PHI) <= PI;
+        let others_rock = (0..recorder.scenery.blocks.len()).any(rocks);
         let choice = |k: usize| {
             let reach = recorder.scenery.blocks[k].reach;
             let [x, y, turn] = [0, 1, PHI].map(|c| moves(k, c));
             let [across, up] = [0, 1].map(|c| self.carried_travel(recorder, k, c));
-            if holds(turn, 1.0) && turn * reach >= TURNS * across.max(up) {
+            // Beside what rocks, a ball has its way in its portrait, as its turns would stretch the axis.
+            let rolls = turn > PI && others_rock;
+            if !rolls && holds(turn, 1.0) && turn * reach >= TURNS * across.max(up) {
                 Some(PHI)
             } else {
                 [(0, x), (1, y)]
@@ -331,6 +348,7 @@ impl Panels {
                     x: values(1, factors[0]),
                     v: values(2, factors[1]),
                     strong,
+                    over: 0,
                 }
             };
             let coordinate = &COORDINATES[c];
@@ -344,6 +362,13 @@ impl Panels {
             let tops = orbits.iter().filter(|_| c == PHI).filter_map(near);
             let guides = guides(tops.flatten(), factors[0]);
             let on = from_ground(recorder, &self.curves, c);
+            let strong = what_is_strong(orbits.iter().map(|(_, points)| (strong(points), points.len())));
+            let mut lines: Vec<PortraitLine> = orbits.into_iter().map(line).collect();
+            let coincide = match coincident::tell_apart(&mut lines) {
+                0 => None,
+                count => Some(format!("{count} curves coincide, wholly or in part")),
+            };
+            let notes: Vec<String> = strong.into_iter().chain(coincide).collect();
             let portrait = Portrait {
                 id: ["phase_x", "phase_y", "phase"][c],
                 title: format!("Phase portrait: {} over {}", coordinate.velocity_symbol, coordinate.symbol),
@@ -353,11 +378,29 @@ impl Panels {
                 y_unit: format!("{}/s", units[1]),
                 least: if c == PHI { [4e-5 * factors[0], 2e-3] } else { factors.map(|factor| 1e-4 * reach * factor) },
                 guides,
-                note: what_is_strong(orbits.iter().map(|(_, points)| (strong(points), points.len()))),
-                lines: orbits.into_iter().map(line).collect(),
+                note: (!notes.is_empty()).then(|| notes.join("; ")),
+                lines,
             };
             self.portraits.push(portrait);
         }
+    }
+}
+
+/// What the middle of a beam is called where it is that of a span.
+const MIDSPAN: &str = "midspan";
+
+/// What the middle of a beam is called: it may be that of no span, or a support.
+fn middle_word(beam: &BeamDrawn) -> &'static str {
+    let (middle, rounding) = (0.5 * beam.span, 1e-9 * beam.span);
+    // How far the nearest supports, or ends, are on either side.
+    let nearest = |side: f64| {
+        let far = beam.inner.iter().map(|(x, _)| side * (x - middle)).filter(|far| *far >= -rounding);
+        far.fold(middle, f64::min)
+    };
+    match [-1.0, 1.0].map(nearest) {
+        [left, right] if left.max(right) <= rounding => "support",
+        [left, right] if (left - right).abs() <= rounding => MIDSPAN,
+        _ => "middle",
     }
 }
 

@@ -2,11 +2,11 @@
 
 use super::{Line, Measure, Panels, Place, TimePanel};
 use crate::page::content::{holds, largest};
-use crate::page::means;
+use crate::page::jolts::Jolts;
+use crate::page::means::Filter;
 use crate::page::recorder::PageRecorder;
 use crate::page::scenery::ContactDrawn;
 use crate::sections::Kind;
-use crate::with_digits;
 
 /// What is to be said of forces in beams that blocks strike.
 pub(crate) fn after_impacts(recorder: &PageRecorder) -> Option<&'static str> {
@@ -34,6 +34,7 @@ impl Panels {
         let moment = most(&[Kind::Moment, Kind::ReactionCouple]);
         let force = most(&[Kind::Shear, Kind::AxialForce, Kind::Reaction]).max(moment / span);
         let moment = moment.max(force * span);
+        let jolts = Jolts::of(recorder);
         for (kind, title, of, unit, scale) in [
             (Kind::Moment, "Bending moment M", "bending moment at", "N m", moment),
             (Kind::Shear, "Transverse force V", "transverse force at", "N", force),
@@ -75,13 +76,14 @@ impl Panels {
             } else {
                 drawn.iter().map(|(column, ..)| self.curves.means(*column)).collect()
             };
-            let period = means::period(&self.curves, &means);
+            let filter = Filter::of(&self.curves, &jolts, &means);
             let (mut lines, mut over) = (Vec::new(), Vec::new());
             for (column, label, number, _) in drawn {
                 let mean = match kind {
-                    Kind::Stress => means::largest_about(&self.curves, column, period)
+                    Kind::Stress => filter
+                        .largest_about(&self.curves, column)
                         .map(|most| most.into_iter().map(|stress| factor * stress).collect()),
-                    _ => means::ringing(&self.curves, column, period),
+                    _ => filter.ringing(&self.curves, column),
                 };
                 let is_raw = mean.is_some();
                 let name = if is_raw { String::new() } else { label.clone() };
@@ -89,8 +91,7 @@ impl Panels {
                 over.extend(mean.map(|y| Line { label, number, y, is_raw: false, of: None }));
             }
             let strong = if kind == Kind::Stress { "largest within" } else { "without vibrations of periods below" };
-            let pale = (!over.is_empty())
-                .then(|| format!("pale: all steps; strong: {strong} {}", with_digits(period, "s", 3)));
+            let pale = (!over.is_empty()).then(|| format!("pale: all steps; strong: {strong} {}", filter.told()));
             let peaks = (kind != Kind::AxialForce).then(|| after_impacts(recorder)).flatten();
             let note = pale.into_iter().chain(peaks.map(str::to_owned)).collect::<Vec<_>>().join("; ");
             let note = (!note.is_empty()).then_some(note);

@@ -170,7 +170,7 @@ pub(super) fn contact_sizes(recorder: &PageRecorder, forces: &[Option<ForceCurve
     let has_springs = recorder.scenery.contacts.iter().any(|contact| contact.has_duration);
     let of = |contact: &ContactDrawn| {
         let own = forces[contact.first..contact.first + contact.points.len()].iter().flatten();
-        let parts: [fn(&ForceCurve) -> &[f64]; 2] = [|forces| &forces.normal, |forces| &forces.tangential];
+        let parts: [fn(&ForceCurve) -> &[f64]; 2] = [|forces| forces.drawn(0), |forces| forces.drawn(1)];
         parts.map(|part| if has_springs { largest(own.clone().flat_map(part)) } else { seen(own.clone().map(part)) })
     };
     recorder.scenery.contacts.iter().map(of).collect()

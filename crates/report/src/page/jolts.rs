@@ -1,0 +1,94 @@
+//! When what beams carry is jolted: forces change at once then, and a mean that reached across would change before.
+
+use super::recorder::{PARTS, PageRecorder};
+use teeter_scenario::scene::{History, LoadKind};
+
+/// The times of jolts.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Jolts {
+    /// s, in ascending order.
+    pub(super) times: Vec<f64>,
+    /// What they are.
+    pub(super) what: &'static str,
+}
+
+/// Most jumps of a load that are looked for.
+const MOST_JUMPS: usize = 200;
+
+/// A load jumps where it changes by more than this part of itself.
+const JUMP: f64 = 0.1;
+
+impl Jolts {
+    pub(super) fn of(recorder: &PageRecorder) -> Self {
+        let (impacts, loads) = (impacts(recorder), loads(recorder));
+        let what = match (impacts.is_empty(), loads.is_empty()) {
+            (false, false) => "impacts or jumps of loads",
+            (true, false) => "jumps of loads",
+            _ => "impacts",
+        };
+        let mut times = [impacts, loads].concat();
+        times.sort_by(f64::total_cmp);
+        Self { times, what }
+    }
+}
+
+/// Each impact, and of those after the last one that is kept the beginning of each part of the run that has some.
+fn impacts(recorder: &PageRecorder) -> Vec<f64> {
+    let rings = |pair: usize| recorder.scenery.contacts.get(pair).is_some_and(|contact| contact.rings);
+    let (kept, end) = (&recorder.kept, recorder.end);
+    let known = kept.impacts.iter().filter(|impact| rings(impact.contact)).map(|impact| impact.t);
+    let are_all_known = kept.impact_count <= kept.impacts.len() as u64;
+    let known_until = if are_all_known { end } else { kept.impacts.last().map_or(0.0, |last| last.t) };
+    let has_some = |part: &usize| kept.density.iter().any(|(pair, counts)| counts[*part] > 0 && rings(*pair));
+    let begin = |part: usize| part as f64 * end / PARTS as f64;
+    let later = (0..PARTS).filter(|part| begin(*part) >= known_until).filter(has_some).map(begin);
+    known.chain(later).collect()
+}
+
+/// Where loads jump within the run, or come onto a beam, or leave it.
+fn loads(recorder: &PageRecorder) -> Vec<f64> {
+    let scenery = &recorder.scenery;
+    // Forces on blocks that no beam carries shake none.
+    let on_beams = |block: usize| {
+        scenery.contacts.iter().any(|contact| contact.rings && (contact.block == block || contact.other == Some(block)))
+    };
+    let forces = scenery.forces.iter().filter(|force| on_beams(force.block)).map(|force| &force.history);
+    let histories = forces.chain(scenery.loads.iter().map(|load| &load.history));
+    let ends = scenery.loads.iter().filter_map(|load| match load.kind {
+        LoadKind::Moving { at, speed, .. } if speed != 0.0 => {
+            Some([-at / speed, (scenery.beams[load.beam].span - at) / speed])
+        }
+        _ => None,
+    });
+    let times = histories.flat_map(|history| jumps(history, recorder.end)).chain(ends.flatten());
+    times.filter(|t| *t > 0.0 && *t < recorder.end).collect()
+}
+
+fn jumps(history: &History, end: f64) -> Vec<f64> {
+    let signal = history.signal();
+    let next = |t: &f64| Some(signal.next_break(*t)).filter(|next| next > t && *next < end);
+    let breaks = std::iter::successors(next(&0.0), next).take(MOST_JUMPS);
+    let jumps = |t: &f64| {
+        let [before, after] = [-1e-9, 1e-9].map(|part| signal.value(t + part * end));
+        (after - before).abs() > JUMP * before.abs().max(after.abs())
+    };
+    breaks.filter(jumps).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use teeter_scenario::simulation::Simulation;
+
+    #[test]
+    fn a_load_jolts_a_beam_where_it_comes_leaves_and_jumps() {
+        let text = "[time]\nend = '2 s'\nstep = '1 ms'\n[material.steel]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n\
+            [beam.deck]\nmaterial = 'steel'\nspan = '3 m'\nwidth = '10 cm'\nthickness = '2 cm'\nelements = 6\n\
+            [load.cart]\non = 'deck'\nat = '-1 m'\nforce = '-1 kN'\nspeed = '4 m/s'\n\
+            [load.stone]\non = 'deck'\nat = '1 m'\nforce = '-1 kN'\nsignal = 'put'\n[signal.put]\nshape = 'constant'\nstart = '1.5 s'\n";
+        let resolved = teeter_scenario::load(text.as_bytes(), "loads", "loads", &[]).unwrap();
+        let simulation = Simulation::new(&resolved.scene).unwrap();
+        let jolts = Jolts::of(&PageRecorder::new(&resolved.scene, &simulation.layout));
+        assert_eq!((jolts.times.as_slice(), jolts.what), (&[0.25, 1.0, 1.5][..], "jumps of loads"));
+    }
+}
