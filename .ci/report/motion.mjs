@@ -99,9 +99,11 @@ export function wrongVerdicts(summary, trajectory, { scenery, frames }) {
     // What can touch nothing has no stance.
     const touches = summary.model.contacts.length > 0;
     if (!touches && verdict.max_phi_over_alpha !== null) say("it touches nothing, but has a largest φ/α");
+    // On a beam it is measured from that, of which the table has no slope.
+    const bends = summary.model.beams.length > 0;
     const level = touches && block.upright && stands && !falls && scenery.incline === 0 && !turns;
     const beyond = (row) => Math.abs(at(row, "phi")) > block.alpha;
-    if (level) {
+    if (level && !bends) {
       const share = largest(trajectory, (row) => at(row, "phi")) / block.alpha;
       // The table may lack the row of the largest angle.
       if (share > verdict.max_phi_over_alpha * (1 + 1e-9) + 1e-12) say(`rows reach ${share} α, it says ${verdict.max_phi_over_alpha}`);

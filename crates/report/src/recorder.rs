@@ -275,7 +275,7 @@ impl<'a> Recorder<'a> {
     pub fn note(&mut self, findings: &[Diagnostic]) {
         for finding in findings {
             // The recorder hears of them late: they have been told.
-            let _ = self.kept.record.warnings.enter("scene", None, || finding.to_string());
+            self.kept.record.warnings.enter_finding("scene", finding.to_string());
         }
     }
 

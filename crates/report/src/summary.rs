@@ -6,7 +6,7 @@ use crate::{BeamRecord, ImpactRow, LargestDeflection, LargestStress, ReactionRan
 use crate::{made_energy, taken_energy, unlocated};
 use serde::Serialize;
 use std::collections::BTreeSet;
-use teeter_integrator::{Ended, Peak, RockingMonitor, State};
+use teeter_integrator::{Ended, Peak, RockingMonitor, Signal as _, State};
 use teeter_scenario::scene::{RecordScene, Scene};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::wording;
@@ -130,7 +130,7 @@ pub struct Summary {
     pub ended: EndedWord,
     /// What was modelled and what was left out.
     pub model: ModelSummary,
-    /// Warnings, each kind once.
+    /// Warnings, each kind of those of the run once, and what was found in the scene before it.
     pub warnings: Vec<Warning>,
     /// How some of it is told.
     #[serde(skip)]
@@ -237,6 +237,9 @@ impl BorneSummary {
     }
 }
 
+/// A run that is shorter than a record by no more than rounding has all of it.
+const ROUNDED: f64 = 1.0 - 1e-9;
+
 /// A recorded acceleration that prescribes a component of a motion, as used: cut, corrected, scaled.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordSummary {
@@ -254,6 +257,9 @@ pub struct RecordSummary {
     pub duration: f64,
     /// Peak ground acceleration, m/s².
     pub peak_acceleration: f64,
+    /// The same of the part that was run, where the run is shorter.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub peak_acceleration_in_run: Option<f64>,
     /// Peak ground velocity, m/s, from rest.
     pub peak_velocity: f64,
     /// Peak ground displacement, m, from rest.
@@ -265,6 +271,15 @@ pub struct RecordSummary {
 }
 
 impl RecordSummary {
+    /// The numbers of a record in a run up to the time `t` (s).
+    fn up_to(t: f64, of: &RecordScene) -> Self {
+        let record = &of.record;
+        let run = (0..record.accelerations().len()).take_while(|k| record.time(*k) <= t);
+        // Between two values it is linear: at the end of the run, too.
+        let peak = || run.map(|k| record.accelerations()[k].abs()).fold(of.table().value(t).abs(), f64::max);
+        Self { peak_acceleration_in_run: (t < ROUNDED * record.duration()).then(peak), ..Self::new(of) }
+    }
+
     /// The numbers of a record as it is used.
     #[must_use]
     pub fn new(of: &RecordScene) -> Self {
@@ -277,6 +292,7 @@ impl RecordSummary {
             step: record.dt(),
             duration: record.duration(),
             peak_acceleration: record.peak_acceleration(),
+            peak_acceleration_in_run: None,
             peak_velocity: record.velocity_peak().size,
             peak_displacement: record.displacement_peak().size,
             arias_intensity: record.arias_intensity(),
@@ -465,7 +481,7 @@ impl Summary {
             deflections,
             verdict,
             records: match wanted("records") {
-                true => scene.records().map(|of| RecordSummary::new(of)).collect(),
+                true => scene.records().map(|of| RecordSummary::up_to(state.t, of)).collect(),
                 false => Vec::new(),
             },
             horizon: record.horizon,

@@ -26,7 +26,7 @@ use serde::{Deserialize, Serialize};
 use sliding::Slides;
 use stance::{Edge, Outline, Stance};
 pub use stance::{SharedStances, Way};
-use standing::Settling;
+use standing::{AtStart, Settling};
 use teeter_integrator::{Mismatch, Model, PhaseKind, RockingMonitor, State, StepReport};
 use teeter_scenario::scene::{BlockScene, Placement, Scene, StopScene, SupportingBody};
 use teeter_scenario::simulation::Layout;
@@ -178,6 +178,19 @@ pub struct BodyVerdict {
     /// Of one that is shaken where it stands, or hops there: what it stands on, and in the end on other blocks, in words, if that moves at the end.
     #[serde(skip)]
     pub(crate) on_what_moves: Option<&'static str>,
+    /// The beam on which it stood throughout, of one that has only moved with it.
+    #[serde(skip)]
+    pub(crate) stood_on: Option<String>,
+    /// Of a block that left its beam: which.
+    #[serde(skip)]
+    pub(crate) left_beam: Option<String>,
+    /// Whether it still touches that.
+    #[serde(skip)]
+    pub(crate) touches_beam: bool,
+    /// To which side its mass centre was past what it stands on from the start, as that of a plank that reaches too far over an edge: nothing of its
+    /// own brings it back, however little it has turned.
+    #[serde(skip)]
+    pub(crate) past_edge: Option<Way>,
     /// Of a block that turns as one with those below it: the lowest of them, on whose base they rock.
     #[serde(skip)]
     pub(crate) turns_with: Option<String>,
@@ -185,8 +198,15 @@ pub struct BodyVerdict {
     #[serde(skip)]
     pub(crate) in_column: bool,
     /// Of the lowest block of a column: its largest φ/α, with the α of all of them together.
-    #[serde(skip)]
-    pub(crate) column: Option<f64>,
+    #[serde(rename = "column_phi_over_alpha", skip_serializing_if = "Option::is_none")]
+    pub column: Option<f64>,
+}
+
+impl BodyVerdict {
+    /// Its largest φ/α as it is told: of the lowest block of a column that of all of it; none where nothing of its own brings it back.
+    pub(crate) fn share(&self) -> Option<f64> {
+        self.column.or(self.max_phi_over_alpha).filter(|_| self.past_edge.is_none())
+    }
 }
 
 /// What is known of a block so far.
@@ -202,6 +222,8 @@ struct Seen {
     part: Option<f64>,
     /// How far it has turned at most against what carries it, to the left and to the right, rad.
     turned: [f64; 2],
+    /// By how much it was turned against what it is placed on when that was largest, rad.
+    joint: f64,
     /// When |φ|/α was last large enough to be called rocking, s.
     rocked: Option<f64>,
     /// Since when it is past a point of no return, s, and to which side.
@@ -215,6 +237,10 @@ struct Seen {
     /// Whether its mass centre has been over its beam, and since when it is past an end, s, and which.
     over: bool,
     out: Option<(f64, Way)>,
+    /// The end of the last step in which a beam pressed on it since then, s.
+    pressed: Option<f64>,
+    /// To which side its mass centre was past the contacts that held it flat at the start.
+    past_edge: Option<Way>,
     /// Since when it is below everything, s.
     sunk: Option<f64>,
     /// From when on it stands, s: the start, or when it settled.
@@ -292,6 +318,8 @@ struct Watched {
     driven: bool,
     /// Whether a hump of a beam can touch it between its feet.
     has_face: bool,
+    /// The block at the foot of the stack that it is in.
+    lowest: usize,
     /// Until when what moves as prescribed below it does so, s; 0 where nothing does.
     driven_until: f64,
     /// Its feet, left and right, in its own frame, m; none without a base.
@@ -325,6 +353,7 @@ impl Watch {
                     Placement::Free { .. } => None,
                 },
                 driven: block.motion.is_given(),
+                lowest: carrier::lowest_below(scene, number),
                 has_face: scene.contacts.iter().any(|contact| contact.block == number && contact.sides),
                 driven_until: carrier::driven_below(scene, number).map_or(0.0, |(_, motion)| motion.settles_at()),
                 feet: (block.base() > 0.0).then(|| feet.map(|foot| [corners[foot].x, corners[foot].y])),
@@ -336,6 +365,15 @@ impl Watch {
             stop: scene.time.stop,
             settles_at: scene.settles_at(),
         }
+    }
+
+    /// The slope from which φ/α of a block counts, against the level of gravity, rad: that of what carries it; on a beam that of the line between the
+    /// feet, also of blocks on others that stand there, as a beam that bends turns what stands on it.
+    fn slope(&self, number: usize, layout: &Layout, state: &State) -> f64 {
+        let lowest = self.blocks[number].lowest;
+        let level = self.blocks[number].outline.as_ref().map_or(0.0, Outline::level);
+        let chord = self.blocks[lowest].chord(layout, lowest, state);
+        chord.map_or_else(|| self.blocks[number].slope(&state.q), |chord| chord - level)
     }
 
     /// From now on stances are taken from there, and entered.
@@ -353,6 +391,12 @@ impl Watched {
     /// The slope of what carries it against the level of gravity, rad.
     fn slope(&self, q: &[f64]) -> f64 {
         self.carrier.slope(q) - self.outline.as_ref().map_or(0.0, Outline::level)
+    }
+
+    /// The slope of the beam that carries it between its feet, put flat about the foot on which it is tilted, rad; `None` on anything else.
+    fn chord(&self, layout: &Layout, number: usize, state: &State) -> Option<f64> {
+        self.carrier.beam()?;
+        self.carrier.chord(self.place(layout, number, state)?, 0.5 * self.base(), layout, &state.q)
     }
 
     /// How high its mass centre is over what the scene stands on, m.
@@ -450,9 +494,9 @@ impl Fates {
         state: &State,
     ) -> Result<(), Mismatch> {
         self.blocks.clear();
-        let (standing, touching) = standing::at_start(&watch.blocks, layout, model, state)?;
+        let AtStart { standing, touching, past_edge } = standing::at_start(&watch.blocks, layout, model, state)?;
         self.joints = Joints::new(&touching, &watch.blocks, layout, state);
-        for (number, (watched, stands)) in watch.blocks.iter().zip(standing).enumerate() {
+        for (number, ((watched, stands), past_edge)) in watch.blocks.iter().zip(standing).zip(past_edge).enumerate() {
             let angle = state.q[layout.blocks[number].range.start + 2];
             // What was placed on something stands there on its base, however far that slopes or it is tilted: on a slope beyond α it is past the
             // point of no return from the start.
@@ -460,7 +504,7 @@ impl Fates {
             let stood = if stands { watched.place(layout, number, state) } else { None };
             let (began, stands_from) = (stands.then_some(about), stands.then_some(state.t));
             let height = (stands && self.joints.only_by_blocks(number)).then(|| watched.height(layout, number, state));
-            self.blocks.push(Seen { began, angle, stands_from, stood, height, ..Seen::default() });
+            self.blocks.push(Seen { began, angle, stands_from, stood, height, past_edge, ..Seen::default() });
         }
         self.look(watch, layout, state.t, state);
         Ok(())
@@ -470,7 +514,7 @@ impl Fates {
     pub(crate) fn observe(&mut self, watch: &Watch, layout: &Layout, step: &StepReport<'_, 2>, state: &State) {
         self.look(watch, layout, step.t_start, state);
         self.find_struck(watch, layout, step);
-        self.touch(watch, step, state.t);
+        self.touch(watch, layout, step, state.t);
         if self.stopped.is_none() {
             self.stopped = self.stop(watch, state.t).map(|reason| (state.t, reason));
         }
@@ -501,7 +545,7 @@ impl Fates {
             let q = &state.q[place.range.clone()];
             let t = state.t;
             if seen.began.is_none() {
-                seen.settle(watched, layout, number, state);
+                seen.settle(watched, watch.slope(number, layout, state), layout, number, state);
             }
             let stance = seen.stance(watched);
             if seen.began.is_some() {
@@ -511,11 +555,13 @@ impl Fates {
             let carried = seen.out.is_none() || seen.beyond.is_some();
             if let Some(mut stance) = stance.filter(|_| carried) {
                 let slope = watched.slope(&state.q);
-                if let Some(part) = stance.part(q[2], slope) {
+                if let Some(part) = stance.part(q[2], watch.slope(number, layout, state)) {
                     if part >= ROCKED {
                         seen.rocked = Some(t);
                     }
-                    seen.part = Some(seen.part.map_or(part, |most| most.max(part)));
+                    if seen.part.is_none_or(|most| part > most) {
+                        (seen.part, seen.joint) = (Some(part), layout.tilt(number, &state.q).abs());
+                    }
                 }
                 let way = Way::of(q[2] - stance.flat);
                 let edge = stance.edge(way);
@@ -536,7 +582,7 @@ impl Fates {
                 }
             }
             seen.angle = q[2];
-            let tilt = layout.tilt(number, &state.q);
+            let tilt = layout.tilt(number, &state.q) - watched.chord(layout, number, state).unwrap_or(0.0);
             let [left, right] = &mut seen.turned;
             (*left, *right) = (left.max(tilt), right.max(-tilt));
             if let Some((from, to)) = seen.stood.zip(watched.place(layout, number, state)) {
@@ -670,7 +716,11 @@ impl Seen {
             let crossed = rocking.and_then(|monitor| monitor.crossings().last()).map(|crossing| crossing.t);
             self.bounces(watched, layout, number, state, crossed)
         };
-        let (what, t, way) = match (overturned, self.out, self.sunk, rests) {
+        // It has left its beam when that doesn't press on it any more.
+        let touches_beam = self.pressed.is_some_and(|last| state.t - last < going::FLIGHT * watched.still_time);
+        let left =
+            self.out.map(|(t, way)| (if touches_beam { t } else { self.pressed.map_or(t, |last| last.max(t)) }, way));
+        let (what, t, way) = match (overturned, left, self.sunk, rests) {
             (Some((t, way)), ..) => (Fate::Overturned, Some(t), Some(way)),
             (None, Some((t, way)), ..) => (Fate::Left, Some(t), Some(way)),
             (None, None, Some(t), _) => (Fate::Sunk, Some(t), None),
@@ -712,6 +762,8 @@ impl Seen {
         let on_its_way = not_upright.filter(|_| what == Fate::Rocks || tips.is_some()).filter(began_to_tip);
         let trembles = || self.trembles(slid, least).filter(|_| moves && turning.is_none());
         let going = going.or_else(trembles);
+        let is_here = matches!(what, Fate::Rests | Fate::Moves) && rests != Some(0.0) && self.stands_from == Some(0.0);
+        let beam = |when: bool| watched.carrier.beam().filter(|_| when).map(|beam| layout.beams[beam].name.clone());
         BodyVerdict {
             body: layout.blocks[number].name.clone(),
             what,
@@ -756,6 +808,10 @@ impl Seen {
             }),
             going,
             tips,
+            stood_on: beam(is_here && self.never_moved(watched, least)),
+            left_beam: beam(what == Fate::Left),
+            touches_beam: what == Fate::Left && touches_beam,
+            past_edge: self.past_edge,
             turns_with: None,
             in_column: false,
             column: None,

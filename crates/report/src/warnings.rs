@@ -44,6 +44,13 @@ impl WarningLog {
         }
     }
 
+    /// Enters what was found in a scene before its run: each finding by itself, unless it is known, as of a run that goes on.
+    pub fn enter_finding(&mut self, code: &'static str, text: String) {
+        if !self.warnings.iter().any(|known| known.code == code && known.text == text) {
+            self.warnings.push(Warning { code: code.into(), count: 1, first_t: None, text });
+        }
+    }
+
     /// The warnings, in the order of their first.
     #[must_use]
     pub fn warnings(&self) -> &[Warning] {
@@ -54,6 +61,16 @@ impl WarningLog {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn findings_of_a_scene_keep_their_texts() {
+        let mut log = WarningLog::default();
+        for text in ["al is not used", "stone is not used", "al is not used"] {
+            log.enter_finding("scene", text.to_owned());
+        }
+        let told: Vec<_> = log.warnings().iter().map(|warning| (warning.text.as_str(), warning.count)).collect();
+        assert_eq!(told, [("al is not used", 1), ("stone is not used", 1)]);
+    }
 
     #[test]
     fn a_flood_is_counted_but_told_rarely() {

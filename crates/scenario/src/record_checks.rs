@@ -1,4 +1,4 @@
-//! Warnings and notes about records that prescribe motions.
+//! Warnings about records that prescribe motions.
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
@@ -8,13 +8,18 @@ use teeter_text::readable::with_digits;
 /// A velocity at the end of a record of at least this fraction of its largest one gives a warning.
 const LEFT_OVER: f64 = 0.01;
 
-/// Warns of a record without effect, or with a velocity that is left over at its end.
+/// Warns of a record without effect, or with a velocity that is left over at its end, or of which most comes after the run.
 pub(crate) fn warning(record: &RecordScene, end: f64, document: &Document) -> Option<Diagnostic> {
     let path = format!("{}.record", record.path);
     let (last, largest) = (record.last_velocity, record.largest_velocity);
     if largest == 0.0 {
         let rule = "the record is 0 throughout, and has no effect";
         return Some(document.error(&path, rule, "check the file, from, to and scale").as_warning());
+    }
+    if let Some([_, strong]) = record.record.husid_times([0.05, 0.95]).ok().filter(|[_, strong]| end < *strong) {
+        let rule = format!("the run ends at {end} s, before 95 % of the record's Arias intensity, at {strong:.2} s");
+        let remedy = "extend the run (time.end), or choose a part by from and to";
+        return Some(document.error(&path, rule, remedy).as_warning());
     }
     let lasts = record.record.duration();
     if end <= lasts || last.abs() <= LEFT_OVER * largest {
@@ -28,14 +33,4 @@ pub(crate) fn warning(record: &RecordScene, end: f64, document: &Document) -> Op
     );
     let remedy = "correct its baseline, such as baseline = \"linear\", or end the run with the record";
     Some(document.error(&path, rule, remedy).as_warning())
-}
-
-/// Notes a run that ends before most of the record has come.
-pub(crate) fn note(record: &RecordScene, end: f64, document: &Document) -> Option<Diagnostic> {
-    let [_, strong] = record.record.husid_times([0.05, 0.95]).ok()?;
-    (end < strong).then(|| {
-        let rule = format!("the run ends at {end} s, before 95 % of the record's Arias intensity, at {strong:.2} s");
-        let remedy = "extend the run (time.end), or choose a part by from and to";
-        document.error(&format!("{}.record", record.path), rule, remedy).as_note()
-    })
 }

@@ -90,9 +90,7 @@ pub(crate) fn warnings(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
 pub(crate) fn notes(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     let (used, end) = (used(scene, document), end(scene));
     let is_heard = |signal: &&SignalScene| used.contains_key(signal.name.as_str()) && !is_silent(&signal.history, end);
-    let signals = scene.signals.iter().filter(is_heard).filter_map(|signal| too_long(signal, end, document));
-    let records = scene.records().take(LISTED).filter_map(|record| record_checks::note(record, end, document));
-    signals.chain(records).collect()
+    scene.signals.iter().filter(is_heard).filter_map(|signal| too_long(signal, end, document)).collect()
 }
 
 /// The end of the run, s.

@@ -18,6 +18,17 @@ pub fn with_unit(x: f64, unit: &str) -> String {
     with_digits(x, unit, 4)
 }
 
+/// A quantity with four digits in the unit that suits a `larger` one: two that are compared have the same.
+#[must_use]
+pub fn like(x: f64, larger: f64, unit: &str) -> String {
+    let own = with_unit(larger, unit);
+    let prefix = own.rsplit_once(' ').and_then(|(_, own)| own.strip_suffix(unit));
+    match PREFIXES.iter().find(|(_, of)| Some(*of) == prefix) {
+        Some((power, prefix)) if larger != 0.0 => format!("{} {prefix}{unit}", shortest(x / 10_f64.powi(*power), 4)),
+        _ => with_unit(x, unit),
+    }
+}
+
 /// As [`with_unit`], with so many digits, one or more.
 #[must_use]
 pub fn with_digits(x: f64, unit: &str, digits: usize) -> String {

@@ -217,10 +217,14 @@ const ARIAS: &str = "m/s";
 /// The unit of velocities, whose length is chosen as that of lengths is.
 const VELOCITY: &str = "/s";
 
+/// The measure that only a run shorter than a record has.
+const IN_RUN: &str = "PGA of the part that was run";
+
 /// What the table says of a record.
-const MEASURES: [Measure; 11] = [
+const MEASURES: [Measure; 12] = [
     Measure::of("Duration", "s", |of, _| of.duration),
     Measure::of("Peak acceleration (PGA)", "m/s²", |of, _| of.peak_acceleration),
+    Measure::of(IN_RUN, "m/s²", |of, _| of.peak_acceleration_in_run.unwrap_or(of.peak_acceleration)),
     Measure::alone("Time of the peak acceleration", "s", |_, record| record.acceleration_peak().time),
     Measure::of("Peak velocity (PGV)", VELOCITY, |of, _| of.peak_velocity),
     Measure::alone("Time of the peak velocity", "s", |_, record| record.velocity_peak().time),
@@ -285,7 +289,9 @@ pub(super) fn section(records: &[Arc<RecordScene>], summaries: &[RecordSummary],
         html.push_str("</tr></thead>\n");
     }
     html.push_str("<tbody>\n");
-    for Measure { name, unit, value, .. } in MEASURES.iter().filter(|measure| measure.in_report || !named) {
+    let is_cut = summaries.iter().any(|of| of.peak_acceleration_in_run.is_some());
+    let measures = MEASURES.iter().filter(|of| (of.in_report || !named) && (of.name != IN_RUN || is_cut));
+    for Measure { name, unit, value, .. } in measures {
         let values: Vec<f64> = summaries.iter().zip(records).map(|(of, record)| value(of, &record.record)).collect();
         let ((unit, factor), per) = match *unit {
             "m" => (readable(units[0], largest(&values)), ""),

@@ -249,6 +249,11 @@ impl Scenery {
         }) || self.crowd.is_some()
     }
 
+    /// Whether a block stands on a beam.
+    pub(crate) fn is_on_beam(&self, block: usize) -> bool {
+        self.listed.iter().any(|(one, surface)| *one == block && matches!(surface, SupportingBody::Beam(_)))
+    }
+
     /// Whether none of a block's contacts has springs.
     pub(crate) fn touches_rigidly(&self, block: usize) -> bool {
         let own = |contact: &&ContactDrawn| contact.block == block || contact.other == Some(block);

@@ -82,6 +82,20 @@ pub(super) fn driven_below(scene: &Scene, number: usize) -> Option<(Driven, &Mot
     None
 }
 
+/// The block at the foot of a stack, on which a block stands, directly or by others; itself if it stands on no other block.
+pub(super) fn lowest_below(scene: &Scene, number: usize) -> usize {
+    let mut block = number;
+    // Only beams ask for it; at most as many storeys as there are blocks.
+    let storeys = if scene.beams.is_empty() { 0 } else { scene.blocks.len() };
+    for _ in 0..storeys {
+        match support(scene, block) {
+            Some(SupportingBody::Block(below)) if !scene.blocks[below].motion.is_given() => block = below,
+            _ => break,
+        }
+    }
+    block
+}
+
 impl Carrier {
     pub(super) fn of(scene: &Scene, layout: &Layout, number: usize) -> Self {
         let support = |block: usize| support(scene, block);
@@ -141,6 +155,24 @@ impl Carrier {
             On::Block(range) => q[range.start + 2],
             On::Ground(_) | On::Fixed => self.slope(q),
         }
+    }
+
+    /// The slope of the line between two places on the beam that carries the block, at `x` ∓ `half` (m, along it), rad; past an end the beam goes on
+    /// straight. `None` on other carriers.
+    pub(super) fn chord(&self, x: f64, half: f64, layout: &Layout, q: &[f64]) -> Option<f64> {
+        let On::Beam(beam, _) = &self.on else { return None };
+        let place = &layout.beams[*beam];
+        let height = |x: f64| {
+            let on = x.clamp(0.0, place.beam.spec().span);
+            let bent = place.deflection(&place.beam.shape_clamped(on), &q[place.range.clone()]);
+            bent.w + bent.slope * (x - on)
+        };
+        Some((height(x + half) - height(x - half)).atan2(2.0 * half))
+    }
+
+    /// The beam that carries the block, by its number.
+    pub(super) fn beam(&self) -> Option<usize> {
+        if let On::Beam(beam, _) = self.on { Some(beam) } else { None }
     }
 
     /// What the velocity is of, in words; `None` of what doesn't move.

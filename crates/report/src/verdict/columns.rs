@@ -1,12 +1,13 @@
-//! Blocks that stand on each other and rock as one: on the base of the lowest, with the critical angle of all of them together.
+//! Blocks that stand on each other and rock as one, or did before they came to rest: on the base of the lowest, with the critical angle of all of them together.
 
-use super::{BodyVerdict, Fate, SLID, Seen, Watched};
+use super::{BodyVerdict, Fate, ROCKED, SLID, Seen, Watched};
 use std::collections::BTreeMap;
 use teeter_integrator::State;
 use teeter_scenario::scene::{Scene, SupportingBody};
 use teeter_scenario::simulation::Layout;
 
-/// Blocks rock as one if the joints between them never opened by more than this part of the angle to which they turned.
+/// Blocks rock as one if the joints between them never opened by more than this part of the angle to which they turned; of those that came to rest not
+/// when they were turned the farthest.
 const AS_ONE: f64 = 0.02;
 
 /// Says of each block that rocks on another one without turning relative to it with which it does, and of the lowest how far all of them together are from
@@ -23,7 +24,12 @@ pub(super) fn find(
     let mut told = 0..verdict.len();
     let places: Vec<Option<usize>> = watched.iter().map(|of| if of.driven { None } else { told.next() }).collect();
     let rocks = |number: usize, verdict: &[BodyVerdict]| {
-        places[number].filter(|of| verdict[*of].what == Fate::Rocks && verdict[*of].tips.is_none())
+        places[number].filter(|of| match verdict[*of].what {
+            Fate::Rocks => verdict[*of].tips.is_none(),
+            // What never moved didn't rock.
+            Fate::Rests => verdict[*of].t > Some(0.0),
+            _ => false,
+        })
     };
     // The angle to which a block of which φ/α is known has turned, rad.
     let turned = |number: usize, part: Option<f64>| Some(part? * scene.blocks[number].critical_angle()?);
@@ -32,9 +38,18 @@ pub(super) fn find(
         // At most as many storeys as there are blocks.
         for _ in 0..watched.len() {
             let Some(SupportingBody::Block(below)) = watched[block].on else { break };
-            let (Some(of), Some(_)) = (rocks(block, verdict), rocks(below, verdict)) else { break };
-            let opened = seen.get(block).map_or(f64::INFINITY, |seen| seen.turned[0].max(seen.turned[1]));
-            let Some(turned) = turned(block, verdict[of].max_phi_over_alpha) else { break };
+            let (Some(of), Some(foot)) = (rocks(block, verdict), rocks(below, verdict)) else { break };
+            if verdict[of].what != verdict[foot].what {
+                break;
+            }
+            let [turned, beneath] =
+                [(block, of), (below, foot)].map(|(block, of)| turned(block, verdict[of].max_phi_over_alpha));
+            let Some((turned, beneath)) = turned.zip(beneath) else { break };
+            let opened = match verdict[of].what {
+                // While the last small swings die out the joints open one by one: its largest swing tells how it rocked.
+                Fate::Rests => seen[block].joint.max((turned - beneath).abs()),
+                _ => seen[block].turned[0].max(seen[block].turned[1]),
+            };
             if watched[below].driven || opened > AS_ONE * turned {
                 break;
             }
@@ -54,17 +69,22 @@ pub(super) fn find(
         };
         let in_column = group.iter().all(|number| above(*number) <= 1)
             && group.iter().all(|number| *number == root || stays(*number));
+        let Some(base) = rocks(root, verdict) else { continue };
+        let column = critical_angles(watched, layout, state, &group, root).filter(|_| in_column).map(|alpha| {
+            let parts = seen[root].turned.into_iter().zip(alpha).filter(|(_, alpha)| *alpha > 0.0);
+            parts.fold(0.0, |most: f64, (turned, alpha)| most.max(turned / alpha))
+        });
+        // What came to rest rocked if the column as a whole did; drums that are much wider than it is hardly turned.
+        if verdict[base].what == Fate::Rests && column.is_none_or(|part| part < ROCKED) {
+            continue;
+        }
         for number in group.iter().filter(|number| **number != root) {
             if let Some(of) = rocks(*number, verdict) {
                 verdict[of].turns_with = Some(layout.blocks[root].name.clone());
                 verdict[of].in_column = in_column;
             }
         }
-        let Some(of) = rocks(root, verdict).filter(|_| in_column) else { continue };
-        verdict[of].column = critical_angles(watched, layout, state, &group, root).map(|alpha| {
-            let parts = seen[root].turned.into_iter().zip(alpha).filter(|(_, alpha)| *alpha > 0.0);
-            parts.fold(0.0, |most: f64, (turned, alpha)| most.max(turned / alpha))
-        });
+        verdict[base].column = column;
     }
 }
 

@@ -1,7 +1,7 @@
 //! How a block moves that does so at the end of a run and has no other fate: it bounces, rolls, slides or falls (`docs/verdict.md`).
 
 use super::standing::SETTLED;
-use super::{FLAT, Fates, ROCKED, Seen, Watch, Watched};
+use super::{BEGAN_TO_TIP, FLAT, Fates, ROCKED, Seen, Watch, Watched};
 use serde::{Deserialize, Serialize};
 use teeter_integrator::{State, StepReport};
 use teeter_scenario::scene::SupportingBody;
@@ -105,7 +105,7 @@ const RISES: f64 = 1e-3;
 const HOPS: f64 = 1e-4;
 
 /// What touches nothing for less than this part of √(R/g) doesn't fly, but chatters: a bounce as long rises by little more than a thousandth of R.
-const FLIGHT: f64 = 0.1;
+pub(super) const FLIGHT: f64 = 0.1;
 
 /// What rises by this part of R in its last flight bounces, whatever it turns by: a block that rocks hops by less as a corner lands.
 const BOUNCES: f64 = 0.02;
@@ -121,8 +121,20 @@ const VIBRATES: f64 = 100.0;
 
 impl Fates {
     /// Takes the contacts of a step in that ended at `t` (s).
-    pub(super) fn touch(&mut self, watch: &Watch, step: &StepReport<'_, 2>, t: f64) {
-        let pressing = step.active().flat_map(|part| part.contacts).filter(|contact| contact.p[0] > 0.0);
+    pub(super) fn touch(&mut self, watch: &Watch, layout: &Layout, step: &StepReport<'_, 2>, t: f64) {
+        let pressing = || step.active().flat_map(|part| part.contacts).filter(|contact| contact.p[0] > 0.0);
+        // Of few steps: a block that tips over the end of a beam falls soon.
+        if self.blocks.iter().any(|seen| seen.out.is_some()) {
+            let by_beam = |name: &String| layout.beams.iter().any(|beam| beam.name == *name);
+            for contact in pressing() {
+                let Some(pair) = layout.pairs.get(contact.id.pair() as usize) else { continue };
+                let block = pair.points.first().and_then(|point| self.blocks.get_mut(point.block));
+                if let Some(seen) = block.filter(|seen| seen.out.is_some() && pair.between.iter().any(by_beam)) {
+                    seen.pressed = Some(t);
+                }
+            }
+        }
+        let pressing = pressing();
         for body in pressing.flat_map(|contact| [0, 1].map(|side| contact.sides[side].body.0 as usize)) {
             let (Some(Seen { touched, .. }), Some(watched)) = (self.blocks.get_mut(body), watch.blocks.get(body))
             else {
@@ -241,6 +253,12 @@ impl Seen {
         let stands = self.part.is_some_and(|part| part < ROCKED);
         let stays = slid.is_some_and(|slid| slid.abs() < 0.1 * least);
         (stands && stays).then_some(Going::Trembles)
+    }
+
+    /// Whether it has only moved with what carries it: neither slid by a tenth of `least` (m), nor turned against it, nor flown.
+    pub(super) fn never_moved(&self, watched: &Watched, least: f64) -> bool {
+        let is_placed = watched.on.is_some() && self.touched.last.is_some() && self.touched.landed.is_none();
+        is_placed && self.slides.most() < 0.1 * least && self.part.is_some_and(|part| part < BEGAN_TO_TIP)
     }
 
     /// Whether it has never moved on the block that it stands on: neither slid by a tenth of `least` (m), nor turned against it by what can be seen.

@@ -5,8 +5,8 @@ use super::{BodyVerdict, Fate, Going, Side};
 use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
 use teeter_integrator::State;
-use teeter_scenario::readable::with_unit;
-use teeter_scenario::scene::{Placement, Scene, SupportingBody};
+use teeter_scenario::readable::{like, with_unit};
+use teeter_scenario::scene::Scene;
 
 /// Blocks up to this many are told one by one.
 const FEW: usize = 2;
@@ -23,7 +23,7 @@ pub(crate) fn headline(
         few if few.len() <= FEW => {
             few.iter().map(|of| format!("`{}` {}", of.body, one(scene, of, state.t))).collect::<Vec<_>>().join("; ")
         }
-        many => all(scene, many),
+        many => all(scene, many, state.t),
     };
     let borne = beams.iter().filter_map(|beam| Some((beam.part_of_yield_strength?, beam)));
     if let Some((part, beam)) = borne.max_by(|a, b| a.0.total_cmp(&b.0)) {
@@ -97,10 +97,14 @@ fn turns(phi: f64) -> String {
 fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     let at = of.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
     let way = of.way.map_or("", |way| way.word());
-    let largest = of.column.or(of.max_phi_over_alpha).filter(|part| *part >= super::ROCKED);
+    let largest = of.share().filter(|part| *part >= super::ROCKED);
     let of_all = if of.column.is_some() { " of the column" } else { "" };
-    let largest = largest.map_or_else(String::new, |part| format!("largest φ/α{of_all} {}", self::part(part)));
-    let by = |way: f64| format!("{} {}", with_unit(way.abs(), "m"), direction(scene, way).way);
+    // It may have flown at a larger angle.
+    let since = if of.stands_from > Some(0.0) { " since it settled" } else { "" };
+    let largest = largest.map_or_else(String::new, |part| format!("largest φ/α{of_all}{since} {}", self::part(part)));
+    // Both in the unit of the larger.
+    let far = of.slid.into_iter().chain(of.farthest).fold(0.0, |far: f64, way| far.max(way.abs()));
+    let by = |way: f64| format!("{} {}", like(way.abs(), far, "m"), direction(scene, way).way);
     let slid = of.slid.map_or_else(String::new, |slid| match of.farthest {
         None => format!("slid by {}", by(slid)),
         Some(farthest) if !has_slid(scene, of) => format!("slid {}, then back to its start", by(farthest)),
@@ -108,7 +112,7 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             let side = direction(scene, slid).side;
             // What ends on the other side, farther from its start than it was before, isn't back there.
             let back = if farthest * slid < 0.0 && farthest.abs() <= slid.abs() { "" } else { "back " };
-            format!("slid {}, then {back}to {} {side} its start", by(farthest), with_unit(slid.abs(), "m"))
+            format!("slid {}, then {back}to {} {side} its start", by(farthest), like(slid.abs(), far, "m"))
         }
     });
     let beside = |text: String| if largest.is_empty() { text } else { format!("{text} ({largest})") };
@@ -129,16 +133,21 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         }
         Fate::Overturned => format!("overturned to the {way}{at}{turned}{then_rested}"),
         Fate::Left => {
-            let block = scene.blocks.iter().find(|block| block.name == of.body);
-            let beam = block.and_then(|block| match block.placement {
-                Placement::On { support: SupportingBody::Beam(beam), .. } => Some(scene.beams[beam].name.as_str()),
-                _ => None,
-            });
-            let beam = beam.map_or_else(|| "its beam".to_owned(), |name| format!("`{name}`"));
+            let beam = of.left_beam.as_ref().map_or_else(|| "its beam".to_owned(), |name| format!("`{name}`"));
+            if of.touches_beam {
+                return format!("tipped over the {way} end of {beam}{at} and still touches it");
+            }
             beside(format!("left {beam} at its {way} end{at}{then_rested}"))
         }
         Fate::Sunk => format!("fell below everything that could hold it{at}"),
         Fate::Fell => format!("fell from its place{at}{then_rested}"),
+        Fate::Rests | Fate::Moves if of.stood_on.is_some() => {
+            let since = of.rests_from.map_or_else(String::new, |t| format!(", at rest from {}", time(t)));
+            format!("stood on `{}` throughout{since}", of.stood_on.as_deref().unwrap_or_default())
+        }
+        Fate::Rests if of.turns_with.is_some() => {
+            format!("rocked as one with `{}`, came to rest{at}", of.turns_with.as_deref().unwrap_or_default())
+        }
         Fate::Rests if of.t == Some(0.0) => {
             let how = if side.is_empty() { "stood" } else { "lay" };
             let on = moving_base(scene, &[of]);
@@ -163,7 +172,8 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         Fate::Rocks | Fate::Moves if of.on_its_way.is_some() => {
             let now = of.on_its_way.map_or_else(String::new, angle);
             if let Some(way) = of.tips {
-                return format!("is still tipping to the {}: φ {now} at {}", way.word(), time(end));
+                let past = if of.past_edge == Some(way) { PAST_EDGE } else { "" };
+                return format!("is still tipping to the {}{past}: φ {now} at {}", way.word(), time(end));
             }
             let most = of.last_peak.map_or_else(String::new, |peak| format!(", largest {}{at}", angle(peak)));
             format!("has not been upright yet, too short a run to tell how it rocks: φ {now} at {}{most}", time(end))
@@ -196,6 +206,9 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     };
     format!("{}{fate}", tumbled.unwrap_or_default())
 }
+
+/// Of what tips because nothing held it from the start.
+const PAST_EDGE: &str = ", its mass centre past the edge that it stood on from the start";
 
 /// The slope of what carries blocks, rad, from which on sliding is told as up or down it.
 const STEEP: f64 = 0.01;
@@ -257,7 +270,8 @@ fn side_below(of: &BodyVerdict) -> Option<String> {
 fn up_to(scene: &Scene, of: &BodyVerdict, reached: [f64; 2]) -> String {
     let block = scene.blocks.iter().find(|block| block.name == of.body);
     let least = block.map_or(0.0, |block| super::SLID * block.base());
-    let told = |way: f64| format!("{} {}", with_unit(way.abs(), "m"), direction(scene, way).side);
+    let far = reached.iter().fold(0.0, |far: f64, way| far.max(way.abs()));
+    let told = |way: f64| format!("{} {}", like(way.abs(), far, "m"), direction(scene, way).side);
     match reached.map(|way| (way.abs() >= least).then(|| told(way))) {
         [Some(left), Some(right)] => format!("up to {left} and {right} its start"),
         [Some(way), None] | [None, Some(way)] => format!("up to {way} its start"),
@@ -270,9 +284,16 @@ fn has_slid(scene: &Scene, of: &BodyVerdict) -> bool {
     block.zip(of.slid).is_some_and(|(block, slid)| slid.abs() >= super::SLID * block.base())
 }
 
-/// What became of many blocks.
-fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
-    let of = |fates: &[Fate]| verdict.iter().filter(|of| fates.contains(&of.what)).collect::<Vec<_>>();
+/// What became of many blocks up to the time `end` (s).
+fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
+    // What stood on a beam, or rocked as a column before it came to rest, is told as that.
+    let bases: Vec<&BodyVerdict> =
+        verdict.iter().filter(|base| verdict.iter().any(|of| of.turns_with.as_ref() == Some(&base.body))).collect();
+    let is_on =
+        |of: &BodyVerdict, base: &BodyVerdict| of.body == base.body || of.turns_with.as_ref() == Some(&base.body);
+    let in_group = |of: &BodyVerdict| bases.iter().any(|base| is_on(of, base));
+    let usual = || verdict.iter().filter(|of| of.stood_on.is_none() && !(of.what == Fate::Rests && in_group(of)));
+    let of = |fates: &[Fate]| usual().filter(|of| fates.contains(&of.what)).collect::<Vec<_>>();
     let by_time =
         |a: &&&BodyVerdict, b: &&&BodyVerdict| a.t.unwrap_or(f64::INFINITY).total_cmp(&b.t.unwrap_or(f64::INFINITY));
     let mut parts = Vec::new();
@@ -282,6 +303,11 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
         let count = if found.len() == total { format!("all {total}") } else { found.len().to_string() };
         let of_all = if parts.is_empty() && found.len() < total { format!(" of {total}") } else { String::new() };
         let blocks = if parts.is_empty() { " blocks" } else { "" };
+        // "First" is of several.
+        if let ([one], "first") = (found, first) {
+            parts.push(format!("`{}` {}", one.body, self::one(scene, one, end)));
+            return;
+        }
         let way = earliest.way.map_or_else(String::new, |way| format!(" to the {}", way.word()));
         let when = match earliest.t {
             Some(0.0) if earliest.what == Fate::Overturned => " from the start".to_owned(),
@@ -303,9 +329,19 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
         tell(&of(&[Fate::Overturned]), "overturned", "first");
         tell(&fell, "fell from its place", "first");
     }
-    tell(&of(&[Fate::Left]), "left their beam", "first");
+    let (tipped, left): (Vec<_>, Vec<_>) = of(&[Fate::Left]).into_iter().partition(|of| of.touches_beam);
+    tell(&left, "left their beam", "first");
+    tell(&tipped, "tipped over the end of their beam", "first");
     tell(&of(&[Fate::Sunk]), "fell below everything", "first");
-    let resting = || verdict.iter().filter(|of| matches!(of.what, Fate::Rests | Fate::Slid) && of.rests_from.is_some());
+    for base in bases.iter().filter(|base| base.what == Fate::Rests) {
+        let column: Vec<_> = verdict.iter().filter(|of| is_on(of, base)).collect();
+        let last = column.iter().filter_map(|of| of.rests_from).fold(0.0, f64::max);
+        let what = format!("rocked as one column on the base of `{}`, came to rest, last at {}", base.body, time(last));
+        tell(&column, &what, "");
+    }
+    let stood: Vec<_> = verdict.iter().filter(|of| of.stood_on.is_some()).collect();
+    tell(&stood, if stood.len() == 1 { "stood on its beam throughout" } else { "stood on their beams throughout" }, "");
+    let resting = || usual().filter(|of| matches!(of.what, Fate::Rests | Fate::Slid) && of.rests_from.is_some());
     let (stood, moved): (Vec<_>, Vec<_>) = resting().partition(|of| of.rests_from == Some(0.0));
     // What never moved didn't come to rest.
     for resting in [moved, stood] {
@@ -335,23 +371,22 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
         .filter(|of| of.what == Fate::Rocks || of.tips.is_some())
         .partition(|of| of.tips.is_some());
     // Blocks that turn as one rock together, on the base of the lowest.
-    let bases: Vec<_> = rocking
-        .iter()
-        .copied()
-        .filter(|base| verdict.iter().any(|of| of.turns_with.as_ref() == Some(&base.body)))
-        .collect();
-    let is_on =
-        |of: &BodyVerdict, base: &BodyVerdict| of.body == base.body || of.turns_with.as_ref() == Some(&base.body);
-    let rocking: Vec<_> = rocking.into_iter().filter(|of| !bases.iter().any(|base| is_on(of, base))).collect();
+    let rocking: Vec<_> = rocking.into_iter().filter(|of| !in_group(of)).collect();
+    let (unheld, tipping): (Vec<_>, Vec<_>) = tipping.into_iter().partition(|of| of.past_edge.is_some());
+    if let [one] = unheld[..] {
+        tell(&[one], &format!("is still tipping{PAST_EDGE}"), "");
+    } else {
+        tell(&unheld, "are still tipping, their mass centres past the edges that they stood on from the start", "");
+    }
     tell(&tipping, if tipping.len() == 1 { "is still tipping" } else { "are still tipping" }, "");
-    for base in &bases {
+    for base in bases.iter().filter(|base| base.what == Fate::Rocks) {
         let column: Vec<_> = verdict.iter().filter(|of| is_on(of, base)).collect();
         let how = if base.column.is_some() { "rock on as one column" } else { "turn as one" };
         tell(&column, &format!("{how} on the base of `{}`", base.body), "");
     }
     tell(&rocking, if rocking.len() == 1 { "rocks on" } else { "rock on" }, "");
     for going in Going::ALL {
-        let these: Vec<_> = verdict.iter().filter(|of| of.going == Some(going)).collect();
+        let these: Vec<_> = usual().filter(|of| of.going == Some(going)).collect();
         let what = match these.len() {
             1 => format!("is {}", going.word()),
             _ => format!("are {}", going.word_of_many()),
@@ -372,6 +407,7 @@ fn all(scene: &Scene, verdict: &[BodyVerdict]) -> String {
     tell(&moving, if moving.len() == 1 { "still moves" } else { "still move" }, "");
     let others = || {
         let stayed = verdict.iter().filter(|of| !matches!(of.what, Fate::Fell | Fate::Overturned));
+        let stayed = stayed.filter(|of| of.past_edge.is_none());
         stayed.map(|of| {
             let base = bases.iter().find(|base| is_on(of, base)).filter(|base| base.column.is_some());
             base.map_or((of, of.max_phi_over_alpha), |base| (base, base.column))

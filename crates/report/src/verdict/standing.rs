@@ -25,6 +25,22 @@ pub(super) struct Settling {
     pub rocked: Option<f64>,
 }
 
+/// How blocks stand at the start.
+pub(super) struct AtStart {
+    /// Which do.
+    pub standing: Vec<bool>,
+    /// Which touch, by their numbers.
+    pub touching: Vec<[usize; 2]>,
+    /// To which side the mass centre is past all that holds the block from below, of one that lies flat there.
+    pub past_edge: Vec<Option<Way>>,
+}
+
+/// Contacts closer together than this part of R hold a block as one corner does, on which it is tilted.
+const APART: f64 = 1e-3;
+
+/// A mass centre is past the outermost contact by more than this part of R.
+const PAST: f64 = 1e-6;
+
 /// Which blocks stand at the start: those that were placed on ground, a beam or a block whose motion is prescribed, or are joined to one of them by
 /// closed contacts, a chain of them; and those so little above what stands that by their fall and their speed they can't turn over. With them, which
 /// blocks touch, by their numbers: a number beyond the blocks is ground or a beam.
@@ -33,7 +49,7 @@ pub(super) fn at_start(
     layout: &Layout,
     model: &Model<2>,
     state: &State,
-) -> Result<(Vec<bool>, Vec<[usize; 2]>), Mismatch> {
+) -> Result<AtStart, Mismatch> {
     // All that is no free block has one number, after the blocks.
     let fixed = blocks.len();
     let node = |block: usize| if blocks.get(block).is_some_and(|of| !of.driven) { block } else { fixed };
@@ -54,6 +70,7 @@ pub(super) fn at_start(
     // More than a contact counts as closed at, and than the fall that as little energy takes as turns a block over.
     let farthest = blocks.iter().map(|block| 2.0 * block.reach).fold(0.0, f64::max);
     let (mut candidates, mut touching) = (Vec::new(), Vec::new());
+    let mut held = vec![[f64::INFINITY, f64::NEG_INFINITY]; fixed];
     model.candidates(&state.q, farthest, &mut candidates)?;
     for candidate in &candidates {
         let [a, b] = [0, 1].map(|side| of_body(candidate.sides[side].body));
@@ -68,6 +85,12 @@ pub(super) fn at_start(
         }
         for (side, [upper, lower]) in [[a, b], [b, a]].into_iter().enumerate() {
             let block = blocks.get(upper).filter(|_| upper != fixed);
+            if let Some(at) =
+                block.filter(|_| closed).and_then(|block| block.held_at(candidate, side, layout, upper, state))
+            {
+                let [left, right] = &mut held[upper];
+                (*left, *right) = (left.min(at), right.max(at));
+            }
             // Known without a search for its stance, which takes long.
             if block.and_then(placed_on) == Some(lower) {
                 continue;
@@ -85,10 +108,39 @@ pub(super) fn at_start(
         }
     }
     stands.truncate(fixed);
-    Ok((stands, touching))
+    let past = |([left, right], block): (&[f64; 2], &Watched)| match block.reach {
+        reach if right - left <= APART * reach => None,
+        reach if *right < -PAST * reach => Some(Way::Right),
+        reach if *left > PAST * reach => Some(Way::Left),
+        _ => None,
+    };
+    let past_edge = held.iter().zip(blocks).map(past).collect();
+    Ok(AtStart { standing: stands, touching, past_edge })
+}
+
+/// How far the normal of a contact on this `side` points up where gravity pulls in the direction `gamma` (rad): 1 for level ground.
+fn up(gamma: f64, candidate: &Candidate<2>, side: usize) -> f64 {
+    let normal = candidate.frame.row(0);
+    (normal[0] * -gamma.cos() + normal[1] * -gamma.sin()) * if side == 0 { 1.0 } else { -1.0 }
 }
 
 impl Watched {
+    /// Where a contact holds a block, one side of it, from below: to the right of the mass centre, m.
+    fn held_at(
+        &self,
+        candidate: &Candidate<2>,
+        side: usize,
+        layout: &Layout,
+        number: usize,
+        state: &State,
+    ) -> Option<f64> {
+        let gamma = self.outline.as_ref()?.gamma;
+        let [x, y] = [0, 1].map(|k| candidate.sides[side].point[k]);
+        let (sin, cos) = state.q[layout.blocks[number].range.start + 2].sin_cos();
+        let at = -gamma.sin() * (cos * x - sin * y) + gamma.cos() * (sin * x + cos * y);
+        (up(gamma, candidate, side) > 0.0).then_some(at)
+    }
+
     /// Whether a block, one side of an open contact, is above the other one and falls on it with too little energy to turn over.
     fn as_good_as_stands(
         &self,
@@ -99,9 +151,7 @@ impl Watched {
         state: &State,
     ) -> bool {
         let Some(outline) = &self.outline else { return false };
-        let normal = candidate.frame.row(0);
-        let up =
-            (normal[0] * -outline.gamma.cos() + normal[1] * -outline.gamma.sin()) * if side == 0 { 1.0 } else { -1.0 };
+        let up = up(outline.gamma, candidate, side);
         if up <= 0.0 {
             return false;
         }
@@ -131,8 +181,8 @@ impl Seen {
         self.stance.0.unwrap_or_else(found)
     }
 
-    /// Of a block that began in flight: whether it has settled with this state, and how it stands then.
-    pub(super) fn settle(&mut self, watched: &Watched, layout: &Layout, number: usize, state: &State) {
+    /// Of a block that began in flight: whether it has settled with this state, on what has this `slope` (rad), and how it stands then.
+    pub(super) fn settle(&mut self, watched: &Watched, slope: f64, layout: &Layout, number: usize, state: &State) {
         let Some(outline) = &watched.outline else { return };
         let (angle, energy) = (state.q[layout.blocks[number].range.start + 2], watched.kinetic(layout, number, state));
         // No lift is more; most steps of a flight end here.
@@ -158,7 +208,6 @@ impl Seen {
             self.settling = None;
             return;
         }
-        let slope = watched.slope(&state.q);
         let settling = self.settling.get_or_insert_with(|| {
             self.stance = KnownStance(Some(outline.stance(angle)));
             Settling { since: state.t, angle, part: 0.0, rocked: None }

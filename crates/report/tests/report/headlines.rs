@@ -1,6 +1,7 @@
 //! The sentence on what became of a scene, where a word would say more than is true.
 
 use crate::page::{run, scenario};
+use crate::sizes::tile;
 use teeter_report::half_cycles;
 
 const BOUNCING: &str = "[time]\nend = '3 s'\nstep = '500 us'\n[ground]\nmotion = { displacement = ['0 mm', '8 mm'], signal = 'shake' }\n\
@@ -67,7 +68,7 @@ fn what_stands_on_a_beam_that_moves_says_so() {
         [block.crate]\ndensity = '1000 kg/m^3'\nwidth = '20 cm'\nheight = '60 cm'\ndepth = '50 cm'\non = 'bridge'\nat = '8 m'\n\
         [contact.b]\nbetween = ['crate', 'bridge']\nfriction = 0.4\n";
     let headline = run("on-a-bridge", text).summary.headline;
-    assert_eq!(headline, "`crate` is still trembling where it stands, on a beam that moves");
+    assert_eq!(headline, "`crate` stood on `bridge` throughout");
     // What moves is the beam under both.
     let lid = "[block.lid]\ndensity = '1000 kg/m^3'\nwidth = '16 cm'\nheight = '10 cm'\ndepth = '50 cm'\non = 'crate'\nat = '8 m'\n\
         [contact.lid]\nbetween = ['lid', 'crate']\nfriction = 0.4\n";
@@ -170,4 +171,132 @@ fn what_hopped_once_and_rocks_since_does_not_bounce() {
         height = '20 cm'\ndepth = '10 cm'\non = 'ground'\nat = '0 m'\ntilt = '4 deg'\n[contact.base]\nbetween = ['box', 'ground']\nfriction = 0.6\n";
     let headline = run("hopped-once", text).summary.headline;
     assert!(headline.starts_with("`box` rocks on"), "{headline}");
+}
+
+/// Its deck sags by 0.24° under the block by its own weight, and more under the load: nothing of that is rocking.
+#[test]
+fn what_stands_flat_on_a_beam_that_bends_does_not_rock() {
+    let text = "[time]\nend = '1 s'\nstep = '100 us'\n[material.steel]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n\
+        [beam.deck]\nmaterial = 'steel'\nspan = '3 m'\nwidth = '20 cm'\nthickness = '25 mm'\nelements = 40\nstart = 'static'\n\
+        self_weight = true\ndamping_ratio = { mode = 1, ratio = 0.02 }\n[load.cart]\non = 'deck'\nat = '-0.5 m'\nforce = '-600 N'\n\
+        speed = '4 m/s'\n[block.post]\ndensity = '2400 kg/m^3'\nwidth = '8 cm'\nheight = '40 cm'\ndepth = '10 cm'\non = 'deck'\n\
+        at = '2 m'\n[contact.c]\nbetween = ['post', 'deck']\nfriction = 0.5\n";
+    let ran = run("moving-load", text);
+    assert_eq!(ran.summary.headline, "`post` stood on `deck` throughout");
+    assert_eq!(ran.summary.impact_count, 0);
+    let largest = ran.summary.max_phi_over_alpha.unwrap();
+    assert!(largest < 1e-5, "{largest} of what it is turned against the line between its feet");
+    assert_eq!(tile(&ran.html, "max_phi_over_alpha"), None);
+    // In the sentence on many blocks, too.
+    let more = ["b", "c"].map(|name| {
+        let block = text.split("[block.post]").nth(1).unwrap().split("[contact").next().unwrap();
+        let at = if name == "b" { "0.5 m" } else { "1 m" };
+        format!("[block.{name}]{}", block.replace("2 m'", &format!("{at}'")).replace("'40 cm'", "'8 cm'"))
+    });
+    let many =
+        run("moving-load-many", &format!("{}{}", text.replace("['post', 'deck']", "['*', 'deck']"), more.concat()));
+    assert_eq!(many.summary.headline, "all 3 blocks stood on their beams throughout");
+}
+
+/// Drums of 0.67 rad that turn by a hundredth of it as a column of 0.17 rad.
+#[test]
+fn a_column_that_came_to_rest_is_told_as_one() {
+    let text = "[time]\nend = '9 s'\nstep = '500 us'\n[ground]\nmotion = { acceleration = ['2.3 m/s^2', '0 m/s^2'], signal = 'shake' }\n\
+        [signal.shake]\nshape = 'one-sine'\nperiod = '0.3 s'\n[block.drum]\ndensity = '2700 kg/m^3'\nwidth = '0.8 m'\nheight = '1 m'\n\
+        depth = '1 m'\non = 'ground'\nat = '0 m'\nrepeat = { count = 5, stacked = true }\n[contact.floor]\nbetween = ['*', 'ground']\n\
+        friction = 0.7\n[contact.joints]\nbetween = ['*', '*']\nfriction = 0.7\n";
+    let column = run("column-at-rest", text);
+    let headline = &column.summary.headline;
+    let told = "all 5 blocks rocked as one column on the base of `drum-1`, came to rest, last at t = ";
+    assert!(headline.starts_with(told), "{headline}");
+    let (_, share) = headline.split_once("; largest φ/α of the column ").unwrap_or_else(|| panic!("{headline}"));
+    let wanted = column.summary.max_phi_over_alpha.unwrap() * 0.8_f64.atan() / 0.16_f64.atan();
+    let value: f64 = share.parse().unwrap();
+    assert!((value / wanted - 1.0).abs() < 0.02, "{headline}: {wanted}");
+    let lowest = column.summary.verdict.iter().position(|of| of.body == "drum-1").unwrap();
+    // The tile has the number of the sentence.
+    assert_eq!(tile(&column.html, &format!("verdict.{lowest}.column_phi_over_alpha")), Some(share));
+    assert!(
+        column.html.contains("<dt>Largest φ/α of the column</dt>")
+            && tile(&column.html, "max_phi_over_alpha").is_none()
+    );
+}
+
+#[test]
+fn what_nothing_holds_from_the_start_has_no_part_of_its_critical_angle_left() {
+    let overhang = run("overhang", include_str!("../../../../scenarios/overhang.toml"));
+    let headline = &overhang.summary.headline;
+    let told = "`tips` is still tipping, its mass centre past the edge that it stood on from the start";
+    assert!(headline.ends_with(told), "{headline}");
+    assert!(!overhang.html.contains("<dt>Largest φ/α"));
+}
+
+#[test]
+fn the_largest_angle_of_what_flew_counts_since_it_settled() {
+    let text = "[time]\nend = '2 s'\nstep = '100 us'\n[ground]\n[block.brick]\ndensity = '2400 kg/m^3'\nwidth = '24 cm'\n\
+        height = '12 cm'\ndepth = '12 cm'\nposition = ['0 m', '60 cm']\nangle = '25 deg'\n[contact.c]\nbetween = ['brick', 'ground']\n\
+        friction = 0.4\nrestitution = 0.3\n";
+    let ran = run("dropped-tilted", text);
+    assert!(ran.summary.headline.contains(" (largest φ/α since it settled 0.1"), "{}", ran.summary.headline);
+    assert!(ran.html.contains("<dt>Largest φ/α since it settled at t = "));
+}
+
+#[test]
+fn first_is_said_of_several_only() {
+    let text = |tilts: [f64; 3]| {
+        let block = |(k, tilt)| {
+            format!(
+                "[block.b{k}]\ndensity = '1000 kg/m^3'\nwidth = '3 cm'\nheight = '13.5 cm'\ndepth = '3 cm'\non = 'ground'\nat = '{k} m'\n\
+                 tilt = '{tilt} deg'\n"
+            )
+        };
+        let blocks: String = tilts.into_iter().enumerate().map(block).collect();
+        format!(
+            "[time]\nend = '1.5 s'\nstep = '500 us'\n[ground]\n{blocks}[contact.c]\nbetween = ['*', 'ground']\nfriction = 0.5\n"
+        )
+    };
+    let one = run("one-of-three", &text([0.0, 13.0, 0.0]));
+    let headline = &one.summary.headline;
+    let told = "`b1` began past its critical angle and overturned to the left, came to rest on its left side at t = ";
+    assert!(headline.starts_with(told) && headline.ends_with("; 2 stood still throughout"), "{headline}");
+    assert!(one.html.contains("<dt>Overturned at (b1)</dt>"));
+    let two = run("two-of-three", &text([0.0, 13.0, -13.0]));
+    assert!(two.summary.headline.starts_with("2 of 3 blocks overturned, first `b1`"), "{}", two.summary.headline);
+    assert!(two.html.contains("<dt>First overturned at</dt>"));
+}
+
+#[test]
+fn lengths_of_one_sentence_are_in_one_unit() {
+    let text = "[time]\nend = '2 s'\nstep = '500 us'\n[ground]\nincline = '20 deg'\n[block.b]\ndensity = '1000 kg/m^3'\nwidth = '20 cm'\n\
+        height = '20 cm'\ndepth = '20 cm'\non = 'ground'\nat = '0 m'\nvelocity = ['2.3 m/s', '0.84 m/s']\n[contact.c]\n\
+        between = ['b', 'ground']\nfriction = 0.05\n";
+    let headline = run("up-and-down", text).summary.headline;
+    assert!(headline.contains("slid 0.7") && headline.contains(" m up the slope, then to "), "{headline}");
+    assert!(!headline.contains(" mm "), "{headline}");
+}
+
+/// Beside Housner's 0.93 a ratio of 1.00 would be an impact that loses nothing: of a beam it is one bounce of many.
+#[test]
+fn a_beam_gives_no_ratio_of_velocities_to_compare_with_that_of_rigid_ground() {
+    let head = |html: &str| {
+        let table = &html[html.find("id=\"rocking-title\"").unwrap()..];
+        table[..table.find("</thead>").unwrap()].to_owned()
+    };
+    let (beam, ground) = (scenario("free-rocking-on-beam"), scenario("free-rocking-on-ground"));
+    assert!(["ω⁺/ω⁻", "Housner"].iter().all(|column| head(&ground.html).contains(column)));
+    assert!(!["ω⁺/ω⁻", "Housner"].iter().any(|column| head(&beam.html).contains(column)));
+    assert!(head(&beam.html).contains("Next peak / previous"));
+    assert!(beam.html.contains("On a beam no ω⁺/ω⁻ is given") && !ground.html.contains("On a beam no ω⁺/ω⁻ is given"));
+}
+
+#[test]
+fn energies_have_at_most_four_digits_before_the_point() {
+    let text = "[time]\nend = '1 s'\nstep = '500 us'\n[ground]\n[block.b]\ndensity = '1000 kg/m^3'\nwidth = '20 cm'\nheight = '20 cm'\n\
+        depth = '20 cm'\nposition = ['0 m', 'HEIGHT']\n[contact.c]\nbetween = ['b', 'ground']\nfriction = 0.5\n";
+    for height in ["0.1001 m", "0.11 m", "1.1 m", "4 m"] {
+        let ran = run(&format!("energy-{}", &height[..3]), &text.replace("HEIGHT", height));
+        let shown = tile(&ran.html, "energy.dissipated").unwrap();
+        let number: f64 = shown.split('\u{a0}').next().unwrap().parse().unwrap();
+        assert!((0.1..1e4).contains(&number), "{height}: {shown}");
+    }
 }

@@ -94,3 +94,17 @@ fn a_record_that_the_plots_of_the_ground_show_is_not_drawn_again() {
         assert!(run.figures.iter().any(|(file, svg)| file == "records.svg" && svg.contains(again)));
     }
 }
+
+#[test]
+fn the_peak_of_what_was_run_stands_beside_that_of_the_whole_record() {
+    let motion = "motion.x = { record = 'quake.csv', scale = 2 }";
+    let [part, whole] = [("cut", "0.25 s"), ("all", "2 s")].map(|(name, end)| run_to(end, name, motion));
+    // Half-way up the first triangle.
+    let record = &part.summary["records"][0];
+    assert_eq!((&record["peak_acceleration"], &record["peak_acceleration_in_run"]), (&2.0.into(), &1.0.into()));
+    let row = "PGA of the part that was run <span class=\"unit\">(m/s²)</span></th><td>1</td>";
+    assert!(part.html.contains(row));
+    assert!(
+        whole.summary["records"][0].get("peak_acceleration_in_run").is_none() && !whole.html.contains("that was run")
+    );
+}

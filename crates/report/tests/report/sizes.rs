@@ -129,7 +129,7 @@ fn what_the_scheme_takes_is_no_dissipation() {
 }
 
 /// What the tile of a number shows; none if there is no such tile.
-fn tile<'a>(html: &'a str, path: &str) -> Option<&'a str> {
+pub(crate) fn tile<'a>(html: &'a str, path: &str) -> Option<&'a str> {
     let tile = &html[html.find(&format!("data-summary=\"{path}\""))?..];
     Some(&tile[tile.find('>')? + 1..tile.find("</dd>")?])
 }

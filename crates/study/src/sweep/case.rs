@@ -216,8 +216,13 @@ fn run_once(
         Summary::of_keys(&keys, &scene, &layout, state, &record, word, 0.0)
     });
     let outputs = sweep.outputs().iter().map(|output| output.cell(summary.as_ref(), &columns, &scene)).collect();
-    let mut warnings: Vec<String> =
-        Summary::warnings(&scene, state, &record).map(|warning| warning.code.to_string()).collect();
+    // A scene may have several findings of one kind.
+    let mut warnings: Vec<String> = Vec::new();
+    for warning in Summary::warnings(&scene, state, &record) {
+        if warnings.iter().all(|code| *code != warning.code) {
+            warnings.push(warning.code.to_string());
+        }
+    }
     // Rows of all steps are as close as they can be.
     let is_thinned = (columns.rows() as u64) < state.step;
     if is_thinned && sweep.outputs().iter().any(|output| output.is_coarse(&columns)) {

@@ -57,19 +57,24 @@ pub(super) fn rocking(
     let of_rates = decimals(cycles.iter().filter_map(|cycle| cycle.omega).flatten(), 5);
     let of_peaks = decimals(cycles.iter().filter_map(|cycle| cycle.peak_after).map(|peak| peak * per_radian), 4);
     // A column without a value says nothing: of a dropped block no corner comes down while the other one stands.
-    let (hits, ideal) =
-        (cycles.iter().any(|cycle| cycle.omega.is_some()), cycles.iter().any(|cycle| cycle.housner.is_some()));
+    let number = |cycle: &HalfCycle| scenery.blocks.iter().position(|block| block.name == cycle.body);
+    // The velocities at one of the bounces of a beam give no restitution, with which rigid ground could be compared.
+    let is_on_beam = |cycle: &HalfCycle| number(cycle).is_some_and(|block| scenery.is_on_beam(block));
+    let ratio = |cycle: &HalfCycle| cycle.ratio().filter(|_| !is_on_beam(cycle));
+    let housner = |cycle: &HalfCycle| cycle.housner.filter(|_| !is_on_beam(cycle));
+    let hits = cycles.iter().any(|cycle| cycle.omega.is_some());
+    let (ratios, ideal) = (cycles.iter().any(|of| ratio(of).is_some()), cycles.iter().any(|of| housner(of).is_some()));
     let mut head =
         "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"rocking-title\"><table>\n<thead><tr>"
             .to_owned();
     head.push_str(if several { "<th scope=\"col\">Block</th>" } else { "" });
     head.push_str("<th scope=\"col\">φ = 0 at<br><small>s</small></th>");
     head.push_str(if hits {
-        "<th scope=\"col\">ω⁻<br><small>rad/s</small></th><th scope=\"col\">ω⁺<br><small>rad/s</small></th>\
-         <th scope=\"col\">ω⁺/ω⁻</th>"
+        "<th scope=\"col\">ω⁻<br><small>rad/s</small></th><th scope=\"col\">ω⁺<br><small>rad/s</small></th>"
     } else {
         ""
     });
+    head.push_str(if ratios { "<th scope=\"col\">ω⁺/ω⁻</th>" } else { "" });
     head.push_str(if ideal { "<th scope=\"col\">Housner</th>" } else { "" });
     let _ = write!(
         head,
@@ -100,8 +105,8 @@ pub(super) fn rocking(
             (true, fixed(Some(cycle.t), of_times)),
             (hits, rates[0].clone()),
             (hits, rates[1].clone()),
-            (hits, fixed(cycle.ratio(), 4)),
-            (ideal, fixed(cycle.housner, 4)),
+            (ratios, fixed(ratio(cycle), 4)),
+            (ideal, fixed(housner(cycle), 4)),
             (true, fixed(cycle.peak_after.map(|peak| peak * per_radian), of_peaks)),
             (true, fixed(cycle.decay(), 4)),
         ];
@@ -126,7 +131,6 @@ pub(super) fn rocking(
     } else {
         ""
     });
-    let number = |cycle: &HalfCycle| scenery.blocks.iter().position(|block| block.name == cycle.body);
     let on_blocks = cycles.iter().filter_map(number).any(|number| scenery.touches_blocks(number));
     html.push_str(if on_blocks {
         "Of a block that stands on another one, φ, ω⁻ and ω⁺ are relative to that one, which the impact moves, too: their ratio is not one of \
@@ -136,7 +140,10 @@ pub(super) fn rocking(
     });
     html.push_str("Next peak / previous has a dash after a previous peak of less than a hundredth of the critical angle, and where one of the two isn’t known. \
         Passages between two peaks below a thousandth of the critical angle are left out. ");
-    html.push_str(if on_blocks {
+    html.push_str(if hits && cycles.iter().any(is_on_beam) {
+        "On a beam no ω⁺/ω⁻ is given: the beam springs back, so that what is one impact on rigid ground goes on over several bounces, and the velocities \
+         before and after one of them don’t tell what is lost. The decay from peak to peak does, but for loads that act meanwhile."
+    } else if on_blocks {
         ""
     } else if hits && !scenery.driven.is_empty() {
         "A base that gives way spreads the loss over the half cycle: the ratio is then nearer to 1."

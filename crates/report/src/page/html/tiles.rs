@@ -107,14 +107,52 @@ fn sliding(summary: &Summary) -> Vec<(String, String, String)> {
     tiles.into_iter().flatten().collect()
 }
 
-/// An energy that was lost, J, in the unit of the plots of energies.
+/// An energy that was lost, J, in the unit of the plots of energies, where that suits it.
 fn lost(lost: f64, summary: &Summary, units: &Units) -> String {
     let scale = summary.energy.scale;
     if !content::holds(lost.abs(), scale) {
         return "0 J".to_owned();
     }
     let (prefix, factor) = units.unit(Measure::Energy, lost.abs());
+    // A number that would be long there, or begin with zeros, is in its own.
+    if !(0.1..1e4).contains(&(factor * lost.abs())) {
+        return with_digits(lost, "J", 3).replace('-', "\u{2212}");
+    }
     format!("{} {prefix}J", shortest(factor * lost, 3).replace('-', "\u{2212}"))
+}
+
+/// The largest φ/α of a scene, as the sentence at its head counts it.
+struct Largest {
+    path: String,
+    label: String,
+    share: f64,
+}
+
+impl Largest {
+    fn of(summary: &Summary) -> Option<Self> {
+        let all = &summary.verdict;
+        let is_told_below = |of: &BodyVerdict| {
+            of.turns_with
+                .as_ref()
+                .is_some_and(|base| all.iter().any(|below| below.body == *base && below.column.is_some()))
+        };
+        let shares = all.iter().enumerate().filter(|(_, of)| !is_told_below(of));
+        let shares = shares.filter_map(|(number, of)| Some((number, of, of.share()?)));
+        let (number, of, share) = shares.max_by(|a, b| a.2.total_cmp(&b.2))?;
+        let whose = match () {
+            () if of.column.is_some() => " of the column",
+            () if all.len() > 1 => " of a block",
+            () => "",
+        };
+        let since = of.stands_from.filter(|t| *t > 0.0);
+        let since = since.map_or_else(String::new, |t| format!(" since it settled at t = {}", as_told(t, "s")));
+        let path = match () {
+            () if of.column.is_some() => format!("verdict.{number}.column_phi_over_alpha"),
+            () if summary.max_phi_over_alpha == Some(share) => "max_phi_over_alpha".to_owned(),
+            () => format!("verdict.{number}.max_phi_over_alpha"),
+        };
+        Some(Self { path, label: format!("Largest φ/α{whose}{since}"), share })
+    }
 }
 
 /// In the units of the plots.
@@ -133,6 +171,13 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, units: &Units) -> Strin
     let impacts = format!("Impacts{}", summary.strikers());
     // What overturned or slides has gone past its critical angle, or not come near it.
     let rocks = summary.overturned_at.is_none();
+    let largest = Largest::of(summary);
+    let overturned: Vec<_> = summary.verdict.iter().filter(|of| of.overturned_at.is_some()).collect();
+    let overturned = match overturned[..] {
+        [of] if summary.verdict.len() > 1 => format!("Overturned at ({})", of.body),
+        [_] => "Overturned at".to_owned(),
+        _ => "First overturned at".to_owned(),
+    };
     // Without contacts their numbers would all be 0.
     let touches = !summary.model.contacts.is_empty() || summary.contact.max_contacts > 0;
     let of_contacts = ["impact_count", "max_penetration"];
@@ -142,11 +187,11 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, units: &Units) -> Strin
         }
         let (label, shown) = match path {
             "deflections.0.w" => ("Largest deflection", summary.deflections.first().map(|of| as_told(of.w, "m"))),
-            "max_phi_over_alpha" => (
-                if summary.verdict.len() > 1 { "Largest φ/α of a block" } else { "Largest φ/α" },
-                summary.max_phi_over_alpha.filter(|_| rocks).and_then(share_of_critical_angle),
-            ),
-            "overturned_at" => ("First overturned at", seconds(summary.overturned_at)),
+            "max_phi_over_alpha" => match &largest {
+                Some(largest) => (largest.label.as_str(), share_of_critical_angle(largest.share).filter(|_| rocks)),
+                None => continue,
+            },
+            "overturned_at" => (overturned.as_str(), seconds(summary.overturned_at)),
             "rests_from" if summary.rests_from == Some(0.0) => ("All at rest", Some("throughout".to_owned())),
             "rests_from" => ("All at rest from", seconds(summary.rests_from)),
             "energy.dissipated" => ("Energy dissipated", Some(lost(summary.energy.dissipated, summary, units))),
@@ -166,7 +211,10 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, units: &Units) -> Strin
         };
         // What has no meaning for this scene, or wasn't measured.
         let Some(shown) = shown else { continue };
+        let path =
+            if path == "max_phi_over_alpha" { largest.as_ref().map_or(path, |of| of.path.as_str()) } else { path };
         let bad = path == "contact.unconverged_steps" && summary.contact.unconverged_steps > 0;
+        let label = escaped(label);
         let _ = writeln!(
             html,
             "<div class=\"tile{}{}\"><dt>{label}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{}</dd></div>",
