@@ -469,11 +469,12 @@ impl Watched {
 /// Between which angles each block stands as it is placed, rad; none for one that can't overturn.
 pub(crate) fn points_of_no_return(scene: &Scene) -> Vec<Option<[f64; 2]>> {
     let of = |block: &BlockScene| {
+        let outline = Outline::of(block, scene.gravity)?;
         let began = match block.placement {
-            Placement::On { .. } => 0.0,
+            Placement::On { .. } => outline.level(),
             Placement::Free { angle, .. } => angle,
         };
-        Some(Outline::of(block, scene.gravity)?.stance(began)?.tops())
+        Some(outline.stance(began)?.tops())
     };
     scene.blocks.iter().map(of).collect()
 }
@@ -499,8 +500,9 @@ impl Fates {
         for (number, ((watched, stands), past_edge)) in watch.blocks.iter().zip(standing).zip(past_edge).enumerate() {
             let angle = state.q[layout.blocks[number].range.start + 2];
             // What was placed on something stands there on its base, however far that slopes or it is tilted: on a slope beyond α it is past the
-            // point of no return from the start.
-            let about = if watched.on.is_some() { 0.0 } else { angle };
+            // point of no return from the start. Its base is the side below where it is level for gravity, which may lean.
+            let level = watched.outline.as_ref().map_or(0.0, Outline::level);
+            let about = if watched.on.is_some() { level } else { angle };
             let stood = if stands { watched.place(layout, number, state) } else { None };
             let (began, stands_from) = (stands.then_some(about), stands.then_some(state.t));
             let height = (stands && self.joints.only_by_blocks(number)).then(|| watched.height(layout, number, state));
@@ -789,7 +791,7 @@ impl Seen {
             turned: self
                 .began
                 .filter(|_| what == Fate::Overturned)
-                .map(|began| (self.angle - began).abs())
+                .map(|began| (self.angle - if watched.on.is_some() { 0.0 } else { began }).abs())
                 .filter(|turn| *turn >= TUMBLED),
             is_carried: rests.is_some() && {
                 let q = &state.q[layout.blocks[number].range.clone()];
