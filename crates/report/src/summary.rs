@@ -315,6 +315,8 @@ pub struct ModelSummary {
     /// The most contacts that there can be at once, but for those of beams with sides of blocks:
     /// the same number as in `teeter check`.
     pub possible_contacts: usize,
+    /// The forces on blocks and the loads on beams, with their size, which their signals multiply.
+    pub loads: Vec<String>,
     /// Velocities of blocks and beams together.
     pub dofs: usize,
     /// What the model leaves out, and why.
@@ -619,6 +621,7 @@ impl ModelSummary {
             ground: scene.ground.is_some(),
             contacts: names_once(layout.contact_names()),
             possible_contacts: layout.possible_contacts,
+            loads: wording::loads(scene),
             left_out: teeter_scenario::left_out(scene),
             extent: required.extent.word(),
             removed: required

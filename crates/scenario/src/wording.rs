@@ -1,8 +1,9 @@
 //! Wording of messages: that of every document, and of beams.
 
-use crate::scene::BeamScene;
+use crate::scene::{BeamScene, LoadKind, Scene};
 use teeter_beam::Support;
 use teeter_integrator::WBackend;
+use teeter_text::readable::with_unit;
 
 pub use teeter_text::wording::{bytes, duration, expected};
 
@@ -27,6 +28,51 @@ pub fn backend(beam: &BeamScene) -> &'static str {
         WBackend::CachedColumns => "banded Cholesky, factorised once, with stored columns of W",
         _ => "banded Cholesky, factorised once",
     }
+}
+
+/// So many loads are told of.
+const MOST_LOADS: usize = 12;
+
+/// The forces on blocks and the loads on beams, each with what it acts on and its size, which its signal multiplies.
+#[must_use]
+pub fn loads(scene: &Scene) -> Vec<String> {
+    let upwards = |size: f64, unit: &'static str| (size, unit, ["upwards", "downwards"]);
+    let turning = |couple: f64| (couple, "N m", ["counter-clockwise", "clockwise"]);
+    let named = |sizes: &[(f64, &'static str, [&'static str; 2])]| {
+        let given = sizes.iter().filter(|(size, ..)| *size != 0.0);
+        let told = given.map(|(size, unit, [positive, negative])| {
+            let way = if *size > 0.0 { positive } else { negative };
+            format!("{} {way}", with_unit(size.abs(), unit))
+        });
+        told.collect::<Vec<_>>().join(" and ")
+    };
+    let forces = scene.forces.iter().map(|force| {
+        let ([x, y], on) = (force.force, &scene.blocks[force.block].name);
+        let sizes = [(x, "N", ["to the right", "to the left"]), upwards(y, "N"), turning(force.couple)];
+        format!("{} on {on}: {}", force.name, named(&sizes))
+    });
+    let loads = scene.loads.iter().map(|load| {
+        let size = match load.kind {
+            LoadKind::Point { at, force, couple } => {
+                format!("{} at {}", named(&[upwards(force, "N"), turning(couple)]), with_unit(at, "m"))
+            }
+            LoadKind::Distributed { load, from, to } => {
+                let [from, to] = [from, to].map(|place| with_unit(place, "m"));
+                format!("{}, from {from} to {to}", named(&[upwards(load, "N/m")]))
+            }
+            LoadKind::Moving { force, at, speed } => {
+                let moves = format!("at {} at first, then by {}", with_unit(at, "m"), with_unit(speed, "m/s"));
+                format!("{}, {moves}", named(&[upwards(force, "N")]))
+            }
+        };
+        format!("{} on {}: {size}", load.name, scene.beams[load.beam].name)
+    });
+    let mut told: Vec<String> = forces.chain(loads).collect();
+    if told.len() > MOST_LOADS {
+        let others = told.split_off(MOST_LOADS).len();
+        told.push(format!("and {others} more"));
+    }
+    told
 }
 
 /// The theory of a beam, as in a scene.

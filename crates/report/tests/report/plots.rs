@@ -151,6 +151,20 @@ fn what_rolls_has_an_axis_of_its_own_beside_what_rocks() {
 }
 
 #[test]
+fn the_model_lists_its_loads() {
+    let bridge = scenario_text("two-span-beam").replace("end  = \"1.5 s\"", "end  = \"10 ms\"");
+    let told = [
+        (bridge, "lorry on bridge: 5 kN downwards, at 0 m at first, then by 20 m/s"),
+        (scenario_text("pushed-block"), "hand on box: 6 N to the right"),
+    ];
+    for (text, load) in told {
+        let crate::page::Run { summary, html, .. } = run("loads", &text);
+        assert_eq!(summary.model.loads, [load]);
+        assert!(html.contains(&format!("<dt>Loads</dt><dd>{load}</dd>")));
+    }
+}
+
+#[test]
 fn a_support_in_the_middle_of_a_beam_is_no_midspan() {
     let short = scenario_text("two-span-beam").replace("end  = \"1.5 s\"", "end  = \"0.2 s\"");
     let labels = |text: &str| {

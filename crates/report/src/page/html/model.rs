@@ -33,6 +33,9 @@ pub(super) fn model(summary: &Summary) -> String {
     row("Ground", if model.ground { "rigid" } else { "none" });
     let plural = if model.possible_contacts == 1 { "" } else { "s" };
     row("Contacts", &format!("{}; {} possible contact{plural}", list(&model.contacts), model.possible_contacts));
+    if !model.loads.is_empty() {
+        row("Loads", &model.loads.iter().map(|text| escaped(text)).collect::<Vec<_>>().join("<br>"));
+    }
     row("Degrees of freedom", &model.dofs.to_string());
     if !model.left_out.is_empty() {
         row("Left out", &model.left_out.iter().map(|text| escaped(text)).collect::<Vec<_>>().join("<br>"));
