@@ -1,6 +1,7 @@
 //! The event-driven scheme: `event-driven` (`docs/schemes.md`).
 
 mod decide;
+mod dips;
 mod events;
 mod instant;
 mod linear;
