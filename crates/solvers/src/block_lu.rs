@@ -324,13 +324,16 @@ impl<const D: usize> BlockLu<D> {
     }
 }
 
-/// `target −= l u`: the sums of nalgebra's product in its order, but in one function, which the compiler inlines
-/// without optimisation across crates, too (a factorisation in a third of the time).
+/// `target −= l u`: the sums of nalgebra's product in its order, but in plain loops, which the compiler inlines without optimisation
+/// across crates, too.
 #[inline]
 fn subtract_product<const D: usize>(target: &mut Block<D>, l: &Block<D>, u: &Block<D>) {
     let (target, l, u) = (&mut target.data.0, &l.data.0, &u.data.0);
     for c in 0..D {
-        let mut sum = l[0].map(|x| x * u[c][0]);
+        let mut sum = [0.0; D];
+        for r in 0..D {
+            sum[r] = l[0][r] * u[c][0];
+        }
         for k in 1..D {
             for r in 0..D {
                 sum[r] += l[k][r] * u[c][k];
