@@ -16,6 +16,7 @@ mod stance;
 mod standing;
 
 use carrier::Carrier;
+use columns::Column;
 use falling::Joints;
 use floor::Floor;
 pub(crate) use going::Going;
@@ -191,6 +192,9 @@ pub struct BodyVerdict {
     /// own brings it back, however little it has turned.
     #[serde(skip)]
     pub(crate) past_edge: Option<Way>,
+    /// Of a block that overturned as one with others, a column: the lowest of them.
+    #[serde(skip)]
+    pub(crate) overturned_with: Option<String>,
     /// Of a block that turns as one with those below it: the lowest of them, on whose base they rock.
     #[serde(skip)]
     pub(crate) turns_with: Option<String>,
@@ -230,6 +234,8 @@ struct Seen {
     beyond: Option<(f64, Way)>,
     /// Whether it has fallen to the next side since.
     fallen: bool,
+    /// The column of which it has been a part since the start, or when that passed its point of no return.
+    column: Option<Column>,
     /// Since when it is still, s.
     still: Option<f64>,
     /// How long it was still at most between two motions, s; `None` before the first.
@@ -286,6 +292,8 @@ pub struct Fates {
 #[derive(Debug)]
 pub(crate) struct Watch {
     blocks: Vec<Watched>,
+    /// The block that stands on each, if it is the only one.
+    above: Vec<Option<usize>>,
     floor: Floor,
     stop: StopScene,
     /// Before it nothing ends the run by rest, s.
@@ -359,8 +367,10 @@ impl Watch {
                 feet: (block.base() > 0.0).then(|| feet.map(|foot| [corners[foot].x, corners[foot].y])),
             }
         };
+        let blocks: Vec<Watched> = scene.blocks.iter().enumerate().map(watched).collect();
         Self {
-            blocks: scene.blocks.iter().enumerate().map(watched).collect(),
+            above: columns::above(blocks.iter().map(|block| block.on)),
+            blocks,
             floor: Floor::of(scene, layout),
             stop: scene.time.stop,
             settles_at: scene.settles_at(),
@@ -480,9 +490,13 @@ pub(crate) fn points_of_no_return(scene: &Scene) -> Vec<Option<[f64; 2]>> {
 }
 
 impl Fates {
-    /// Between which angles each block stood, rad; none for one that can't overturn, or began in flight and didn't settle.
+    /// Between which angles each block stood, rad, with its column if it turned as one with that; none for one that can't overturn, or began in
+    /// flight and didn't settle.
     pub(crate) fn points_of_no_return(&self, watch: &Watch) -> Vec<Option<[f64; 2]>> {
-        let of = |(seen, watched): (&Seen, &Watched)| seen.stance(watched).map(|stance| stance.tops());
+        let of = |(seen, watched): (&Seen, &Watched)| match seen.column {
+            Some(column) => Some(column.tops),
+            None => seen.stance(watched).map(|stance| stance.tops()),
+        };
         self.blocks.iter().zip(&watch.blocks).map(of).collect()
     }
 
@@ -617,6 +631,7 @@ impl Fates {
             let sunk = floor.is_above([q[0], q[1]], watched.reach, layout, &state.q);
             seen.sunk = if sunk { seen.sunk.or(Some(t)) } else { None };
         }
+        self.look_at_columns(watch, layout, before, state);
     }
 
     /// Since when it rests at the time `t` (s). While what is below it moves on it may only pause, as it did before.
@@ -633,7 +648,8 @@ impl Fates {
         let free = || self.blocks.iter().zip(&watch.blocks).filter(|(_, watched)| !watched.driven);
         free().next()?;
         let rests = |(seen, watched): (&Seen, &Watched)| Self::rests(seen, watched, t).is_some();
-        let down = |of: (&Seen, &Watched)| of.0.beyond.is_some() && (of.0.fallen || rests(of));
+        let is_past = |seen: &Seen| seen.beyond.is_some() || seen.column.is_some_and(|column| column.beyond.is_some());
+        let down = |of: (&Seen, &Watched)| is_past(of.0) && (of.0.fallen || rests(of));
         if watch.stop.overturned && free().any(down) {
             return Some(StopReason::Overturned);
         }
@@ -691,6 +707,12 @@ impl Seen {
             };
             self.fallen || rests.is_some() || !comes_back()
         });
+        // With its column it overturned before it was past its own point of no return.
+        let with_column = self.column.and_then(|column| column.overturned(spin, rests.is_some()));
+        let overturned = match (overturned, with_column) {
+            (Some((t, way)), Some((with_column, same))) if way == same => Some((t.min(with_column), way)),
+            (alone, with_column) => alone.or(with_column),
+        };
         let place = watched.place(layout, number, state);
         let slid = self.stood.zip(place).map(|(from, to)| to - from).filter(|_| overturned.is_none() && fell.is_none());
         let least = SLID * watched.base();
@@ -814,6 +836,7 @@ impl Seen {
             left_beam: beam(what == Fate::Left),
             touches_beam: what == Fate::Left && touches_beam,
             past_edge: self.past_edge,
+            overturned_with: None,
             turns_with: None,
             in_column: false,
             column: None,

@@ -2,6 +2,7 @@
 //! ground's slope and motion from the scene.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod columns;
 mod moving;
 mod shaken;
 

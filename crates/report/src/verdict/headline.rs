@@ -131,7 +131,13 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         Fate::Overturned if of.t == Some(0.0) => {
             format!("began past its critical angle and overturned to the {way}{turned}{then_rested}")
         }
-        Fate::Overturned => format!("overturned to the {way}{at}{turned}{then_rested}"),
+        Fate::Overturned => {
+            let with = of.overturned_with.as_ref().map_or_else(String::new, |lowest| match *lowest == of.body {
+                true => " as the lowest of a column".to_owned(),
+                false => format!(" as one with `{lowest}`"),
+            });
+            format!("overturned{with} to the {way}{at}{turned}{then_rested}")
+        }
         Fate::Left => {
             let beam = of.left_beam.as_ref().map_or_else(|| "its beam".to_owned(), |name| format!("`{name}`"));
             if of.touches_beam {
@@ -326,7 +332,17 @@ fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
     if collapsed {
         tell(&of(&[Fate::Fell, Fate::Overturned]), "fell or overturned", "first");
     } else {
-        tell(&of(&[Fate::Overturned]), "overturned", "first");
+        let (columns, alone): (Vec<_>, Vec<_>) =
+            of(&[Fate::Overturned]).into_iter().partition(|of| of.overturned_with.is_some());
+        for base in columns.iter().filter(|of| of.overturned_with.as_ref() == Some(&of.body)) {
+            let column: Vec<_> =
+                columns.iter().copied().filter(|of| of.overturned_with.as_ref() == Some(&base.body)).collect();
+            let way = base.way.map_or("", |way| way.word());
+            let when = base.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
+            let what = format!("overturned as one column on the base of `{}` to the {way}{when}", base.body);
+            tell(&column, &what, "");
+        }
+        tell(&alone, "overturned", "first");
         tell(&fell, "fell from its place", "first");
     }
     let (tipped, left): (Vec<_>, Vec<_>) = of(&[Fate::Left]).into_iter().partition(|of| of.touches_beam);
