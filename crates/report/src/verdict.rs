@@ -141,6 +141,9 @@ pub struct BodyVerdict {
     /// Whether what is below it moves on as prescribed.
     #[serde(skip)]
     pub(crate) is_driven: bool,
+    /// Whether it has slid, and stands by now, though it isn't still.
+    #[serde(skip)]
+    pub(crate) stopped: bool,
     /// How fast it moves at the end relative to what carries it, m/s; of one that slides on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
@@ -255,6 +258,10 @@ struct Seen {
     stood: Option<f64>,
     /// How it has slid from there.
     slides: Slides,
+    /// When, s, and where, m, it last had gone on by more than what is still creeps in the time after which it has stopped.
+    went: Option<(f64, f64)>,
+    /// The end of the last step in which not both of its feet pressed, s; of a block on springs.
+    lifted: Option<f64>,
     /// How high it was at the start, m; of a block that other blocks hold.
     height: Option<f64>,
     /// Since when it is lower than that by more than its thickness, s.
@@ -603,6 +610,8 @@ impl Fates {
             (*left, *right) = (left.max(tilt), right.max(-tilt));
             if let Some((from, to)) = seen.stood.zip(watched.place(layout, number, state)) {
                 seen.slides.go_to(to - from, SLID * watched.base());
+                let creeps = FLAT * watched.still_time * watched.still_speed;
+                seen.went = seen.went.filter(|(_, at)| (to - at).abs() < creeps).or(Some((t, to)));
             }
             if let Some(height) = seen.height {
                 let drop = height - watched.height(layout, number, state);
@@ -744,6 +753,10 @@ impl Seen {
         let touches_beam = self.pressed.is_some_and(|last| state.t - last < going::FLIGHT * watched.still_time);
         let left =
             self.out.map(|(t, way)| (if touches_beam { t } else { self.pressed.map_or(t, |last| last.max(t)) }, way));
+        // On springs a block leans to and fro without rocking.
+        let stands_on_both = watched.on_springs
+            && watched.feet.is_some()
+            && self.lifted.or(self.stands_from).is_some_and(|last| !lately(last));
         let (what, t, way) = match (overturned, left, self.sunk, rests) {
             (Some((t, way)), ..) => (Fate::Overturned, Some(t), Some(way)),
             (None, Some((t, way)), ..) => (Fate::Left, Some(t), Some(way)),
@@ -752,7 +765,7 @@ impl Seen {
             (None, None, None, Some(t)) if has_slid => (Fate::Slid, Some(t), None),
             (None, None, None, Some(t)) => (Fate::Rests, Some(t), None),
             _ if bounces => (Fate::Moves, None, None),
-            _ if rocked && !only_slides => (Fate::Rocks, peak.map(|peak| peak.t), None),
+            _ if rocked && !only_slides && !stands_on_both => (Fate::Rocks, peak.map(|peak| peak.t), None),
             _ if has_slid || to_and_fro => (Fate::Slid, None, None),
             _ => (Fate::Moves, None, None),
         };
@@ -779,6 +792,13 @@ impl Seen {
         let rides = what == Fate::Moves && self.rides(watched, least);
         let going = moves.then(|| self.going(watched, layout, number, state)).flatten();
         let going = going.or(rides.then_some(Going::Rides));
+        let going = going.or((moves && stands_on_both && rocked).then_some(Going::Vibrates));
+        // By its way along what carries it, as that may move under it. Where that is shaken, it may slide on.
+        let stopped = what == Fate::Slid
+            && rests.is_none()
+            && self.still.is_none()
+            && state.t >= watched.driven_until
+            && self.went.is_some_and(|(last, _)| !lately(last));
         let turning = not_upright.filter(|_| what == Fate::Rocks || (moves && going.is_none())).filter(turns_on);
         // What stands on a beam that bends slowly turns with it.
         let turns = |_: &&RockingMonitor| what == Fate::Rocks || part.is_some_and(|part| part >= BEGAN_TO_TIP);
@@ -802,7 +822,8 @@ impl Seen {
             to_and_fro: to_and_fro.then(|| self.slides.reached()),
             is_driven: state.t < watched.driven_until,
             slid,
-            speed: (what == Fate::Slid && rests.is_none() && self.still.is_none()).then(|| {
+            stopped,
+            speed: (what == Fate::Slid && rests.is_none() && self.still.is_none() && !stopped).then(|| {
                 let [vx, vy, _] = watched.velocity(layout, number, state);
                 vx.hypot(vy)
             }),
@@ -828,7 +849,7 @@ impl Seen {
                 let moves = state.t < watched.driven_until || vx.hypot(vy) > watched.still_speed;
                 // What rides on a driven block is told to stand on it.
                 let is_told = going == Some(Going::Rides) && watched.carrier.is_by_block();
-                going.is_some_and(Going::stays) && moves && !is_told
+                (stopped || going.is_some_and(Going::stays)) && moves && !is_told
             }),
             going,
             tips,

@@ -5,6 +5,7 @@
 mod columns;
 mod moving;
 mod shaken;
+mod standing;
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
