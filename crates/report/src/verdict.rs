@@ -16,6 +16,7 @@ mod stance;
 mod standing;
 
 use carrier::Carrier;
+use columns::Column;
 use falling::Joints;
 use floor::Floor;
 pub(crate) use going::Going;
@@ -140,6 +141,9 @@ pub struct BodyVerdict {
     /// Whether what is below it moves on as prescribed.
     #[serde(skip)]
     pub(crate) is_driven: bool,
+    /// Whether it has slid, and stands by now, though it isn't still.
+    #[serde(skip)]
+    pub(crate) stopped: bool,
     /// How fast it moves at the end relative to what carries it, m/s; of one that slides on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
@@ -191,6 +195,9 @@ pub struct BodyVerdict {
     /// own brings it back, however little it has turned.
     #[serde(skip)]
     pub(crate) past_edge: Option<Way>,
+    /// Of a block that overturned as one with others, a column: the lowest of them.
+    #[serde(skip)]
+    pub(crate) overturned_with: Option<String>,
     /// Of a block that turns as one with those below it: the lowest of them, on whose base they rock.
     #[serde(skip)]
     pub(crate) turns_with: Option<String>,
@@ -230,6 +237,8 @@ struct Seen {
     beyond: Option<(f64, Way)>,
     /// Whether it has fallen to the next side since.
     fallen: bool,
+    /// The column of which it has been a part since the start, or when that passed its point of no return.
+    column: Option<Column>,
     /// Since when it is still, s.
     still: Option<f64>,
     /// How long it was still at most between two motions, s; `None` before the first.
@@ -249,6 +258,10 @@ struct Seen {
     stood: Option<f64>,
     /// How it has slid from there.
     slides: Slides,
+    /// When, s, and where, m, it last had gone on by more than what is still creeps in the time after which it has stopped.
+    went: Option<(f64, f64)>,
+    /// The end of the last step in which not both of its feet pressed, s; of a block on springs.
+    lifted: Option<f64>,
     /// How high it was at the start, m; of a block that other blocks hold.
     height: Option<f64>,
     /// Since when it is lower than that by more than its thickness, s.
@@ -286,6 +299,8 @@ pub struct Fates {
 #[derive(Debug)]
 pub(crate) struct Watch {
     blocks: Vec<Watched>,
+    /// The block that stands on each, if it is the only one.
+    above: Vec<Option<usize>>,
     floor: Floor,
     stop: StopScene,
     /// Before it nothing ends the run by rest, s.
@@ -359,8 +374,10 @@ impl Watch {
                 feet: (block.base() > 0.0).then(|| feet.map(|foot| [corners[foot].x, corners[foot].y])),
             }
         };
+        let blocks: Vec<Watched> = scene.blocks.iter().enumerate().map(watched).collect();
         Self {
-            blocks: scene.blocks.iter().enumerate().map(watched).collect(),
+            above: columns::above(blocks.iter().map(|block| block.on)),
+            blocks,
             floor: Floor::of(scene, layout),
             stop: scene.time.stop,
             settles_at: scene.settles_at(),
@@ -480,9 +497,13 @@ pub(crate) fn points_of_no_return(scene: &Scene) -> Vec<Option<[f64; 2]>> {
 }
 
 impl Fates {
-    /// Between which angles each block stood, rad; none for one that can't overturn, or began in flight and didn't settle.
+    /// Between which angles each block stood, rad, with its column if it turned as one with that; none for one that can't overturn, or began in
+    /// flight and didn't settle.
     pub(crate) fn points_of_no_return(&self, watch: &Watch) -> Vec<Option<[f64; 2]>> {
-        let of = |(seen, watched): (&Seen, &Watched)| seen.stance(watched).map(|stance| stance.tops());
+        let of = |(seen, watched): (&Seen, &Watched)| match seen.column {
+            Some(column) => Some(column.tops),
+            None => seen.stance(watched).map(|stance| stance.tops()),
+        };
         self.blocks.iter().zip(&watch.blocks).map(of).collect()
     }
 
@@ -589,6 +610,8 @@ impl Fates {
             (*left, *right) = (left.max(tilt), right.max(-tilt));
             if let Some((from, to)) = seen.stood.zip(watched.place(layout, number, state)) {
                 seen.slides.go_to(to - from, SLID * watched.base());
+                let creeps = FLAT * watched.still_time * watched.still_speed;
+                seen.went = seen.went.filter(|(_, at)| (to - at).abs() < creeps).or(Some((t, to)));
             }
             if let Some(height) = seen.height {
                 let drop = height - watched.height(layout, number, state);
@@ -617,6 +640,7 @@ impl Fates {
             let sunk = floor.is_above([q[0], q[1]], watched.reach, layout, &state.q);
             seen.sunk = if sunk { seen.sunk.or(Some(t)) } else { None };
         }
+        self.look_at_columns(watch, layout, before, state);
     }
 
     /// Since when it rests at the time `t` (s). While what is below it moves on it may only pause, as it did before.
@@ -633,7 +657,8 @@ impl Fates {
         let free = || self.blocks.iter().zip(&watch.blocks).filter(|(_, watched)| !watched.driven);
         free().next()?;
         let rests = |(seen, watched): (&Seen, &Watched)| Self::rests(seen, watched, t).is_some();
-        let down = |of: (&Seen, &Watched)| of.0.beyond.is_some() && (of.0.fallen || rests(of));
+        let is_past = |seen: &Seen| seen.beyond.is_some() || seen.column.is_some_and(|column| column.beyond.is_some());
+        let down = |of: (&Seen, &Watched)| is_past(of.0) && (of.0.fallen || rests(of));
         if watch.stop.overturned && free().any(down) {
             return Some(StopReason::Overturned);
         }
@@ -691,6 +716,12 @@ impl Seen {
             };
             self.fallen || rests.is_some() || !comes_back()
         });
+        // With its column it overturned before it was past its own point of no return.
+        let with_column = self.column.and_then(|column| column.overturned(spin, rests.is_some()));
+        let overturned = match (overturned, with_column) {
+            (Some((t, way)), Some((with_column, same))) if way == same => Some((t.min(with_column), way)),
+            (alone, with_column) => alone.or(with_column),
+        };
         let place = watched.place(layout, number, state);
         let slid = self.stood.zip(place).map(|(from, to)| to - from).filter(|_| overturned.is_none() && fell.is_none());
         let least = SLID * watched.base();
@@ -722,6 +753,10 @@ impl Seen {
         let touches_beam = self.pressed.is_some_and(|last| state.t - last < going::FLIGHT * watched.still_time);
         let left =
             self.out.map(|(t, way)| (if touches_beam { t } else { self.pressed.map_or(t, |last| last.max(t)) }, way));
+        // On springs a block leans to and fro without rocking.
+        let stands_on_both = watched.on_springs
+            && watched.feet.is_some()
+            && self.lifted.or(self.stands_from).is_some_and(|last| !lately(last));
         let (what, t, way) = match (overturned, left, self.sunk, rests) {
             (Some((t, way)), ..) => (Fate::Overturned, Some(t), Some(way)),
             (None, Some((t, way)), ..) => (Fate::Left, Some(t), Some(way)),
@@ -730,7 +765,7 @@ impl Seen {
             (None, None, None, Some(t)) if has_slid => (Fate::Slid, Some(t), None),
             (None, None, None, Some(t)) => (Fate::Rests, Some(t), None),
             _ if bounces => (Fate::Moves, None, None),
-            _ if rocked && !only_slides => (Fate::Rocks, peak.map(|peak| peak.t), None),
+            _ if rocked && !only_slides && !stands_on_both => (Fate::Rocks, peak.map(|peak| peak.t), None),
             _ if has_slid || to_and_fro => (Fate::Slid, None, None),
             _ => (Fate::Moves, None, None),
         };
@@ -757,6 +792,13 @@ impl Seen {
         let rides = what == Fate::Moves && self.rides(watched, least);
         let going = moves.then(|| self.going(watched, layout, number, state)).flatten();
         let going = going.or(rides.then_some(Going::Rides));
+        let going = going.or((moves && stands_on_both && rocked).then_some(Going::Vibrates));
+        // By its way along what carries it, as that may move under it. Where that is shaken, it may slide on.
+        let stopped = what == Fate::Slid
+            && rests.is_none()
+            && self.still.is_none()
+            && state.t >= watched.driven_until
+            && self.went.is_some_and(|(last, _)| !lately(last));
         let turning = not_upright.filter(|_| what == Fate::Rocks || (moves && going.is_none())).filter(turns_on);
         // What stands on a beam that bends slowly turns with it.
         let turns = |_: &&RockingMonitor| what == Fate::Rocks || part.is_some_and(|part| part >= BEGAN_TO_TIP);
@@ -780,7 +822,8 @@ impl Seen {
             to_and_fro: to_and_fro.then(|| self.slides.reached()),
             is_driven: state.t < watched.driven_until,
             slid,
-            speed: (what == Fate::Slid && rests.is_none() && self.still.is_none()).then(|| {
+            stopped,
+            speed: (what == Fate::Slid && rests.is_none() && self.still.is_none() && !stopped).then(|| {
                 let [vx, vy, _] = watched.velocity(layout, number, state);
                 vx.hypot(vy)
             }),
@@ -806,7 +849,7 @@ impl Seen {
                 let moves = state.t < watched.driven_until || vx.hypot(vy) > watched.still_speed;
                 // What rides on a driven block is told to stand on it.
                 let is_told = going == Some(Going::Rides) && watched.carrier.is_by_block();
-                going.is_some_and(Going::stays) && moves && !is_told
+                (stopped || going.is_some_and(Going::stays)) && moves && !is_told
             }),
             going,
             tips,
@@ -814,6 +857,7 @@ impl Seen {
             left_beam: beam(what == Fate::Left),
             touches_beam: what == Fate::Left && touches_beam,
             past_edge: self.past_edge,
+            overturned_with: None,
             turns_with: None,
             in_column: false,
             column: None,

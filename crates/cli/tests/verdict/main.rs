@@ -2,8 +2,10 @@
 //! ground's slope and motion from the scene.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod columns;
 mod moving;
 mod shaken;
+mod standing;
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,7 @@
 //! Blocks that stand on each other and rock as one, or did before they came to rest: on the base of the lowest, with the critical angle of all of them together.
 
-use super::{BodyVerdict, Fate, ROCKED, SLID, Seen, Watched};
+use super::{BodyVerdict, Fate, Fates, ROCKED, SLID, Seen, Watch, Watched, Way};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use teeter_integrator::State;
 use teeter_scenario::scene::{Scene, SupportingBody};
@@ -9,6 +10,169 @@ use teeter_scenario::simulation::Layout;
 /// Blocks rock as one if the joints between them never opened by more than this part of the angle to which they turned; of those that came to rest not
 /// when they were turned the farthest.
 const AS_ONE: f64 = 0.02;
+
+/// The column with which a block has turned as one so far, or did until they were past their point of no return.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Column {
+    /// The lowest of its blocks.
+    root: usize,
+    /// The points of no return of all of them together, to the right and to the left, absolute, rad.
+    pub(super) tops: [f64; 2],
+    /// By how much the block is turned against the lowest, rad.
+    ahead: f64,
+    /// The angle of the block at the end of the last step, rad.
+    angle: f64,
+    /// Since when they are past one of them.
+    pub(super) beyond: Option<Beyond>,
+}
+
+/// A column past its point of no return.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Beyond {
+    /// Since when, s.
+    pub(super) since: f64,
+    /// To which side.
+    pub(super) way: Way,
+    /// 2 M g R over the moment of inertia about the foot, 1/s²: what turns inwards faster than the root of this times 1 − cos of the way to
+    /// the point of no return comes back over it.
+    pull: f64,
+}
+
+impl Column {
+    /// By how much a block at an angle (rad) is past the point of no return to a side, rad.
+    fn past(&self, angle: f64, way: Way) -> f64 {
+        way.sign() * (angle - self.ahead - if way == Way::Left { self.tops[1] } else { self.tops[0] })
+    }
+
+    /// Since when and to which side it has overturned with its column, of a block with this spin (rad/s): past the point of no return it stays there if it
+    /// rests or hasn't the energy to come back.
+    pub(super) fn overturned(&self, spin: f64, rests: bool) -> Option<(f64, Way)> {
+        let Beyond { since, way, pull } = self.beyond?;
+        let inwards = -way.sign() * spin;
+        let comes_back = inwards > 0.0 && inwards * inwards > pull * (1.0 - self.past(self.angle, way).cos());
+        (rests || !comes_back).then_some((since, way))
+    }
+}
+
+/// The block that stands on each, if it is the only one.
+pub(super) fn above(on: impl Iterator<Item = Option<SupportingBody>>) -> Vec<Option<usize>> {
+    let on: Vec<_> = on.collect();
+    let single = |below: usize| {
+        let mut all = on.iter().enumerate().filter(|(_, on)| **on == Some(SupportingBody::Block(below)));
+        all.next().filter(|_| all.next().is_none()).map(|(above, _)| above)
+    };
+    (0..on.len()).map(single).collect()
+}
+
+impl Fates {
+    /// Looks at the end of a step that began at `before` (s) which blocks have turned as one so far, and whether they are past their point of no return.
+    pub(super) fn look_at_columns(&mut self, watch: &Watch, layout: &Layout, before: f64, state: &State) {
+        if watch.above.iter().all(Option::is_none) {
+            return;
+        }
+        let angle = |number: usize| state.q[layout.blocks[number].range.start + 2];
+        for (number, seen) in self.blocks.iter_mut().enumerate() {
+            let Some(column) = &mut seen.column else { continue };
+            let is_back = |beyond: Beyond| column.past(angle(number), beyond.way) <= 0.0;
+            if column.beyond.is_none_or(is_back) {
+                column.beyond = None;
+            } else {
+                column.angle = angle(number);
+            }
+        }
+        let is_on_single = |number: usize| matches!(watch.blocks[number].on, Some(SupportingBody::Block(below)) if watch.above[below] == Some(number) && !watch.blocks[below].driven);
+        for lowest in (0..watch.blocks.len()).filter(|number| !is_on_single(*number)) {
+            let mut next = Some(lowest);
+            while let Some(root) = next {
+                let mut group = vec![root];
+                next = watch.above[root];
+                while let Some(number) = next.filter(|number| self.is_as_one(watch, *number, root)) {
+                    group.push(number);
+                    next = watch.above[number];
+                }
+                self.enter_column(watch, layout, (before, &group), state);
+            }
+        }
+    }
+
+    /// Whether a block has only turned with the one below it so far, as seen from the lowest of them, and stays in its place.
+    fn is_as_one(&self, watch: &Watch, number: usize, root: usize) -> bool {
+        let most = |number: usize| self.blocks[number].turned.into_iter().fold(0.0, f64::max);
+        let stays = self.blocks[number].slides.most() < SLID * watch.blocks[number].base();
+        !watch.blocks[root].driven && most(number) <= AS_ONE * most(root) && stays
+    }
+
+    /// Takes in blocks that turn as one, the lowest first.
+    fn enter_column(&mut self, watch: &Watch, layout: &Layout, (before, group): (f64, &[usize]), state: &State) {
+        let root = group[0];
+        let angle = |number: usize| state.q[layout.blocks[number].range.start + 2];
+        let (blocks, level) = (&watch.blocks, watch.blocks[root].outline.as_ref().map_or(0.0, |of| of.level()));
+        let edges = edges(blocks, layout, state, group, root).filter(|[left, right]| {
+            let room = |edge: f64| edge - blocks[root].slope(&state.q);
+            let [to_left, to_right] = self.blocks[root].turned;
+            let (left, right) = (room(*left), -room(*right));
+            group.len() > 1 && left > 0.0 && right > 0.0 && (to_left / left).max(to_right / right) >= ROCKED
+        });
+        let earlier = self.blocks[root].column;
+        for number in group {
+            let known = &mut self.blocks[*number].column;
+            // What passed it together is past it, whether it stays together or not.
+            if known.is_some_and(|known| known.beyond.is_some()) {
+                continue;
+            }
+            *known = edges.map(|[left, right]| {
+                let tops = [right + level, left + level];
+                let ahead = angle(*number) - angle(root);
+                let mut column = Column { root, tops, ahead, angle: angle(*number), beyond: None };
+                let way = if angle(root) > tops[1] { Way::Left } else { Way::Right };
+                let past = column.past(angle(*number), way);
+                if past > 0.0 {
+                    // As the lowest of them passed it.
+                    let from = earlier.map_or(0.0, |earlier| column.past(earlier.angle + ahead, way));
+                    let share = if from < 0.0 { from / (from - past) } else { 1.0 };
+                    let since = before + share * (state.t - before);
+                    column.beyond = Some(Beyond { since, way, pull: pull(blocks, layout, state, group, way) });
+                }
+                column
+            });
+        }
+    }
+}
+
+/// [`Beyond::pull`] of blocks, the lowest first, that turn about the foot of that on a side.
+fn pull(watched: &[Watched], layout: &Layout, state: &State, group: &[usize], way: Way) -> f64 {
+    let place = |number: usize| &state.q[layout.blocks[number].range.clone()];
+    let Some([left, right]) = watched[group[0]].feet else { return 0.0 };
+    let own = place(group[0]);
+    let (sin, cos) = own[2].sin_cos();
+    let [x, y] = if way == Way::Left { left } else { right };
+    let foot = [own[0] + cos * x - sin * y, own[1] + sin * x + cos * y];
+    let (mut moment, mut inertia) = ([0.0; 2], 0.0);
+    for number in group {
+        let Watched { mass, inertia: about_centre, .. } = watched[*number];
+        let arm = [0, 1].map(|k| place(*number)[k] - foot[k]);
+        moment = [0, 1].map(|k| moment[k] + mass * arm[k]);
+        inertia += about_centre + mass * (arm[0] * arm[0] + arm[1] * arm[1]);
+    }
+    2.0 * watched[group[0]].gravity * moment[0].hypot(moment[1]) / inertia
+}
+
+/// Says of blocks that overturned as one with which they did: the lowest of them.
+fn find_overturned(places: &[Option<usize>], seen: &[Seen], layout: &Layout, verdict: &mut [BodyVerdict]) {
+    let with = |number: usize, verdict: &[BodyVerdict]| {
+        let of = &verdict[places[number]?];
+        let root = seen[number].column.filter(|column| column.beyond.is_some())?.root;
+        (of.what == Fate::Overturned).then_some(root)
+    };
+    let roots: Vec<Option<usize>> = (0..seen.len()).map(|number| with(number, verdict)).collect();
+    for (number, root) in roots.iter().enumerate() {
+        let Some(root) = root else { continue };
+        let is_whole = roots[*root] == Some(*root) && roots.iter().filter(|of| **of == Some(*root)).count() > 1;
+        if let Some(of) = places[number].filter(|_| is_whole) {
+            verdict[of].overturned_with = Some(layout.blocks[*root].name.clone());
+        }
+    }
+}
 
 /// Says of each block that rocks on another one without turning relative to it with which it does, and of the lowest how far all of them together are from
 /// overturning.
@@ -23,6 +187,7 @@ pub(super) fn find(
     // Verdicts are of the blocks that aren't driven, in their order.
     let mut told = 0..verdict.len();
     let places: Vec<Option<usize>> = watched.iter().map(|of| if of.driven { None } else { told.next() }).collect();
+    find_overturned(&places, seen, layout, verdict);
     let rocks = |number: usize, verdict: &[BodyVerdict]| {
         places[number].filter(|of| match verdict[*of].what {
             Fate::Rocks => verdict[*of].tips.is_none(),
@@ -102,6 +267,12 @@ fn critical_angles(
     group: &[usize],
     root: usize,
 ) -> Option<[f64; 2]> {
+    let slope = watched[root].slope(&state.q);
+    edges(watched, layout, state, group, root).map(|[left, right]| [left - slope, slope - right])
+}
+
+/// The angles of the lowest of some blocks at which their common mass centre is over its left and its right foot, against the level of gravity, rad.
+fn edges(watched: &[Watched], layout: &Layout, state: &State, group: &[usize], root: usize) -> Option<[f64; 2]> {
     let place = |number: usize| &state.q[layout.blocks[number].range.clone()];
     let mass: f64 = group.iter().map(|number| watched[*number].mass).sum();
     let centre =
@@ -110,7 +281,5 @@ fn critical_angles(
     let (sin, cos) = own[2].sin_cos();
     let [dx, dy] = [centre[0] - own[0], centre[1] - own[1]];
     let [x, y] = [cos * dx + sin * dy, cos * dy - sin * dx];
-    let slope = watched[root].slope(&state.q);
-    let [left, right] = feet.map(|foot| (x - foot[0]).atan2(y - foot[1]));
-    Some([left - slope, slope - right])
+    Some(feet.map(|foot| (x - foot[0]).atan2(y - foot[1])))
 }

@@ -149,8 +149,33 @@ impl Fates {
             }
             (touched.last, touched.left, touched.highest) = (Some(t), touched.now, touched.now);
         }
+        self.find_lifted(watch, step, t);
         for Seen { touched, .. } in &mut self.blocks {
             touched.was_free |= touched.last != Some(t);
+        }
+    }
+}
+
+/// A contact is that of a foot if it is no further from it than this part of R.
+const AT_FOOT: f64 = 1e-3;
+
+impl Fates {
+    /// Notes of blocks on springs which don't press with both feet in a step that ended at `t` (s).
+    fn find_lifted(&mut self, watch: &Watch, step: &StepReport<'_, 2>, t: f64) {
+        for (number, (seen, watched)) in self.blocks.iter_mut().zip(&watch.blocks).enumerate() {
+            let Some(feet) = watched.feet.filter(|_| watched.on_springs) else { continue };
+            let pressing = step.active().flat_map(|part| part.contacts).filter(|contact| contact.p[0] > 0.0);
+            let mut presses = [false; 2];
+            pressing.flat_map(|contact| &contact.sides).filter(|side| side.body.0 as usize == number).for_each(
+                |side| {
+                    for (presses, [x, y]) in presses.iter_mut().zip(feet) {
+                        *presses |= (side.point[0] - x).hypot(side.point[1] - y) <= AT_FOOT * watched.reach;
+                    }
+                },
+            );
+            if presses != [true; 2] {
+                seen.lifted = Some(t);
+            }
         }
     }
 }

@@ -131,7 +131,13 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         Fate::Overturned if of.t == Some(0.0) => {
             format!("began past its critical angle and overturned to the {way}{turned}{then_rested}")
         }
-        Fate::Overturned => format!("overturned to the {way}{at}{turned}{then_rested}"),
+        Fate::Overturned => {
+            let with = of.overturned_with.as_ref().map_or_else(String::new, |lowest| match *lowest == of.body {
+                true => " as the lowest of a column".to_owned(),
+                false => format!(" as one with `{lowest}`"),
+            });
+            format!("overturned{with} to the {way}{at}{turned}{then_rested}")
+        }
         Fate::Left => {
             let beam = of.left_beam.as_ref().map_or_else(|| "its beam".to_owned(), |name| format!("`{name}`"));
             if of.touches_beam {
@@ -156,6 +162,13 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         }
         Fate::Rests => beside(format!("came to rest{side}{moving}{at}")),
         Fate::Slid if of.rests_from.is_some() => beside(format!("{slid} and came to rest{side}{moving}{at}")),
+        Fate::Slid if of.stopped => {
+            let slid = match of.to_and_fro {
+                Some(reached) => format!("slid to and fro, {},", up_to(scene, of, reached)),
+                None => slid,
+            };
+            beside(format!("{slid} and stands{}", on_what_moves(&[of])))
+        }
         Fate::Slid if of.to_and_fro.is_some() => {
             let on = if of.is_driven { moving_base(scene, &[of]) } else { "" };
             let reached = of.to_and_fro.unwrap_or_default();
@@ -205,6 +218,13 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         },
     };
     format!("{}{fate}", tumbled.unwrap_or_default())
+}
+
+/// On what blocks stand that have stopped sliding, in words, if the same moves under all of them.
+fn on_what_moves(bodies: &[&BodyVerdict]) -> String {
+    let first = bodies.first().and_then(|of| of.on_what_moves);
+    let same = first.filter(|_| bodies.iter().all(|of| of.on_what_moves == first));
+    same.map_or_else(|| " now, trembling".to_owned(), |what| format!(" on {what} that moves"))
 }
 
 /// Of what tips because nothing held it from the start.
@@ -326,7 +346,17 @@ fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
     if collapsed {
         tell(&of(&[Fate::Fell, Fate::Overturned]), "fell or overturned", "first");
     } else {
-        tell(&of(&[Fate::Overturned]), "overturned", "first");
+        let (columns, alone): (Vec<_>, Vec<_>) =
+            of(&[Fate::Overturned]).into_iter().partition(|of| of.overturned_with.is_some());
+        for base in columns.iter().filter(|of| of.overturned_with.as_ref() == Some(&of.body)) {
+            let column: Vec<_> =
+                columns.iter().copied().filter(|of| of.overturned_with.as_ref() == Some(&base.body)).collect();
+            let way = base.way.map_or("", |way| way.word());
+            let when = base.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
+            let what = format!("overturned as one column on the base of `{}` to the {way}{when}", base.body);
+            tell(&column, &what, "");
+        }
+        tell(&alone, "overturned", "first");
         tell(&fell, "fell from its place", "first");
     }
     let (tipped, left): (Vec<_>, Vec<_>) = of(&[Fate::Left]).into_iter().partition(|of| of.touches_beam);
@@ -394,6 +424,9 @@ fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
         tell(&these, &what, "");
     }
     let sliding: Vec<_> = of(&[Fate::Slid]).into_iter().filter(|of| of.rests_from.is_none()).collect();
+    let (stopped, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(|of| of.stopped);
+    let stand = if stopped.len() == 1 { "stands" } else { "stand" };
+    tell(&stopped, &format!("slid, and {stand}{}", on_what_moves(&stopped)), "");
     let shaken = |of: &&BodyVerdict| of.to_and_fro.is_some() && (of.is_driven || of.still_from.is_none());
     let (to_and_fro, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(shaken);
     tell(&to_and_fro, if to_and_fro.len() == 1 { "slides to and fro" } else { "slide to and fro" }, "");

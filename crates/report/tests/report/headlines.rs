@@ -44,6 +44,38 @@ fn blocks_that_turn_as_one_rock_as_a_column() {
     assert!(headline.contains("largest φ/α of the column"), "{headline}");
 }
 
+/// Past the point of no return of all of them together, atan(14/60), nothing brings them back, long before it is a single one's, atan(14/20).
+#[test]
+fn a_column_overturns_where_all_of_it_is_past_its_point_of_no_return() {
+    let falling = |end: &str| {
+        let text = format!(
+            "[time]\nend = '{end}'\nstep = '500 us'\n[signal.pulse]\nshape = 'one-sine'\nfrequency = '1.6 Hz'\nstart = '0.2 s'\n\
+             [ground]\nmotion = {{ acceleration = ['3.4 m/s^2', '0 m/s^2'], signal = 'pulse' }}\n[block.stone]\ndensity = '2400 kg/m^3'\n\
+             width = '14 cm'\nheight = '20 cm'\ndepth = '14 cm'\non = 'ground'\nat = '75 cm'\nrepeat = {{ count = 3, stacked = true }}\n\
+             [contact.base]\nbetween = ['stone-*', 'ground']\nfriction = 0.7\n[contact.joints]\nbetween = ['stone-*', 'stone-*']\n\
+             friction = 0.7\n"
+        );
+        run(&format!("falling-column-{}", end.replace(' ', "-")), &text)
+    };
+    let told = "all 3 blocks overturned as one column on the base of `stone-1` to the right at t = ";
+    let mut times = Vec::new();
+    for end in ["0.95 s", "2.5 s"] {
+        let falling = falling(end);
+        assert!(falling.summary.headline.starts_with(told), "{}", falling.summary.headline);
+        assert!(!falling.summary.headline.contains("φ/α"), "{}", falling.summary.headline);
+        for of in &falling.summary.verdict {
+            times.push(of.overturned_at.unwrap());
+        }
+        assert_eq!(falling.summary.overturned_at, falling.summary.verdict[0].overturned_at);
+    }
+    assert!(times.iter().all(|t| (t - times[0]).abs() < 1e-4), "{times:?}");
+    // It doesn't say so before.
+    let before = falling(&format!("{:.4} s", times[0] - 1e-3)).summary;
+    assert!(before.overturned_at.is_none() && before.headline.contains("rock on as one column"), "{}", before.headline);
+    let share = before.verdict[0].column.unwrap();
+    assert!((0.97..1.0).contains(&share), "{share}");
+}
+
 /// A couple of 0.14 N m lifts an edge of a plate that 0.137 N m would balance.
 #[test]
 fn a_plate_that_tips_does_not_tremble() {
