@@ -208,7 +208,7 @@ impl Panels {
             panels
         };
         let all = drawn(recorder.kept.curves.ended());
-        let (buckets, numbers) = (all.curves.len(), all.numbers());
+        let (buckets, numbers) = (all.curves.len(), all.numbers(recorder));
         if numbers <= NUMBERS {
             return all;
         }
@@ -335,15 +335,16 @@ impl Panels {
         self.forces.iter().flatten().flat_map(|forces| &forces.normal).fold(0.0, |most: f64, f| f.max(most))
     }
 
-    /// How many numbers the curves take on the page.
-    fn numbers(&self) -> usize {
+    /// How many numbers the curves take on the page. The extremes of forces that rigid contacts have beside their means don't count: packed as they are,
+    /// they make it no larger than is allowed, and with them all curves of a long run would be half as fine.
+    fn numbers(&self, recorder: &PageRecorder) -> usize {
         let lines = self.panels.iter().flat_map(|panel| &panel.lines).map(|line| line.y.len()).sum::<usize>();
         let portraits = self.portraits.iter().flat_map(|portrait| &portrait.lines).map(|line| 3 * line.t.len());
         let of_course = |forces: &ForceCurve| forces.course.iter().flatten().map(Vec::len).sum::<usize>();
+        let of_springs = recorder.springs.iter().filter_map(|point| self.forces[*point].as_ref()).map(of_course);
         let forces = self.forces.iter().flatten();
-        let forces = forces.map(|forces| 3 * forces.normal.len() + of_course(forces) + forces.impacts.len());
-        let sums = self.sums.iter().flatten().map(|sum| sum.y.len()).sum::<usize>();
-        lines + portraits.sum::<usize>() + forces.sum::<usize>() + sums + 3 * self.curves.len()
+        let forces = forces.map(|forces| 3 * forces.normal.len() + forces.impacts.len());
+        lines + portraits.sum::<usize>() + forces.sum::<usize>() + of_springs.sum::<usize>() + 3 * self.curves.len()
     }
 
     /// Notes that `what` isn't drawn: of whom, if it isn't of the whole scene, and what these are called together; its largest value and its scale.
