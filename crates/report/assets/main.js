@@ -24,6 +24,9 @@
     return new Map(otherAt.map((after, k) => [picture += after, others[k] === null ? null : others[k] * factor]));
   }
 
+  /** The means of the stretches in which the pictures are, where a curve shows the extremes of these. */
+  const atPictures = (means) => new Map(times.map((t, k) => [k, valueAt(means, t)]));
+
   /** Bands of many bodies, and those that go and turn furthest. */
   function addCrowd() {
     const numbers = new Map();
@@ -89,14 +92,18 @@
     const series = (key, factor, of = points) => of.map((point) => {
       const named = { label: contact.points[point.point].label, index: points.indexOf(point) };
       const course = point.course?.[["normal", "tangential"].indexOf(key)];
-      return course ? { ...named, t: curves.t, y: scaled(course.y, factor), known: knownOf(course, factor) }
-        : { ...named, t: forces.borders, y: scaled(point[key], factor), stepped: true };
+      const means = { ...named, t: forces.borders, y: scaled(point[key], factor), stepped: true };
+      if (!course) return means;
+      const known = forces.compliant?.includes(k) ? knownOf(course, factor) : atPictures(means);
+      return { ...named, t: curves.t, y: scaled(course.y, factor), known };
     });
     for (const [i, [key, title]] of [["normal", "Normal force"], ["tangential", "Tangential force"]].entries()) {
       if (key === "tangential" ? forces.frictionless.includes(k) : forces.forceless?.includes(k)) continue;
       const [prefix, factor] = forces.units[k][i];
       const sums = key === "tangential" && forces.shares?.includes(k);
-      const lines = sums ? [{ label: "", index: 0, t: forces.borders, y: scaled(sumOf(points), factor), stepped: true }] : series(key, factor);
+      const [, sum] = forces.sums?.find(([of]) => of === k) ?? [];
+      const meansOfSum = { label: "", index: 0, t: forces.borders, y: scaled(sumOf(points), factor), stepped: true };
+      const lines = !sums ? series(key, factor) : [sum ? { label: "", index: 0, t: curves.t, y: scaled(sum, factor), known: atPictures(meansOfSum) } : meansOfSum];
       const means = key === "normal" ? points.filter(({ mean }) => mean).map((point) =>
         ({ label: contact.points[point.point].label, index: points.indexOf(point), t: forces.borders, y: scaled(point.mean, factor) })) : [];
       for (const line of lines) line.raw = means.some(({ index }) => index === line.index);
@@ -104,10 +111,10 @@
       plots.add({
         id: `${key}-${k}`, contact: k, title: title + suffix, unit: `${prefix}N`, series: overTheRaw(lines, means), cut: forces.cuts[k][i] ?? undefined, floor: 0, least, height: 150,
       });
-      const over = `means over ${forces.bucket}${strikes.length ? " without the impacts" : ""}`;
-      const ofSprings = points.some(({ course }) => course);
+      const over = `${forces.rigid}${strikes.length ? " without the impacts" : ""}`;
+      const ofSprings = forces.compliant?.includes(k);
       if (ofSprings && forces.springs) htmlElement("p", "note", `T${forces.springs.slice(1)}.`, byId(`panel-${key}-${k}`));
-      if (!ofSprings) htmlElement("p", "note", means.length ? `Pale: ${over}. Strong: without vibrations of periods below ${forces.period}.` : `M${over.slice(1)}.`, byId(`panel-${key}-${k}`));
+      if (!ofSprings) htmlElement("p", "note", means.length ? `Pale: ${over}. Strong: without vibrations of periods below ${forces.period}.` : `${over[0].toUpperCase()}${over.slice(1)}.`, byId(`panel-${key}-${k}`));
       if (sums) {
         htmlElement("p", "note", "The sum over the points: how those that stick share it, equilibrium leaves open. Their shares are in contacts.csv.", byId(`panel-${key}-${k}`));
       }

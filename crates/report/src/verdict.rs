@@ -750,7 +750,8 @@ impl Seen {
             self.bounces(watched, layout, number, state, crossed)
         };
         // It has left its beam when that doesn't press on it any more.
-        let touches_beam = self.pressed.is_some_and(|last| state.t - last < going::FLIGHT * watched.still_time);
+        let a_few_steps = 3.5 * state.t / state.step.max(1) as f64;
+        let touches_beam = self.pressed.is_some_and(|last| state.t - last < a_few_steps);
         let left =
             self.out.map(|(t, way)| (if touches_beam { t } else { self.pressed.map_or(t, |last| last.max(t)) }, way));
         // On springs a block leans to and fro without rocking.

@@ -630,6 +630,10 @@ fn a_block_that_slides_past_the_end_of_its_beam_has_left_it() {
     assert!(headline.ends_with(" and still touches it"), "{headline}");
     let tipped = early.verdict("b")["t"].as_f64().unwrap();
     assert!(t[gone - 1] <= tipped && tipped <= t[gone], "{tipped}");
+    // Ten steps after the end pressed for the last time.
+    let just = scene("left-just", &text.replace("0.5 s", &format!("{} s", last + 2e-3)));
+    let headline = just.summary["headline"].as_str().unwrap();
+    assert!(!headline.contains("still touches") && just.verdict("b")["t"] == last, "{headline}");
     assert!(ran.column("b.phi").last().unwrap() < &-1.5 && ran.summary["overturned_at"].is_null());
 }
 

@@ -3,6 +3,9 @@
 //!
 //! A bucket is drawn as two points, lowest and highest in the order in which they came, at its first and last step: up to
 //! two steps a bucket that is the curve itself, beyond that its envelope, from which no peak is missing.
+//!
+//! Forces of contacts are impulses over times: where buckets are longer, their envelope is that of the means over two steps each, as
+//! a mean over the bucket would lose what an earthquake's peaks are.
 
 mod extremes;
 mod forces;
@@ -32,6 +35,8 @@ struct Work {
     struck: [f64; 2],
     struck_for: f64,
     hardest: f64,
+    /// The least and the largest of the short means of the force in the steps without an impact, normal and tangential, N.
+    range: [Range; 2],
     /// Tangential displacement while it pressed, m, from the start of the run to the end of the bucket.
     slip: f64,
     /// Steps in which it pressed, by state.
@@ -47,6 +52,7 @@ impl Work {
             struck: sum(self.struck, later.struck),
             struck_for: self.struck_for + later.struck_for,
             hardest: self.hardest.max(later.hardest),
+            range: [0, 1].map(|k| self.range[k].joined(later.range[k])),
             slip: later.slip,
             sticking: self.sticking + later.sticking,
             slipping: self.slipping + later.slipping,
@@ -80,6 +86,35 @@ impl Work {
         }
     }
 }
+
+/// The least and the largest of some values; upside down without any.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+struct Range {
+    low: f64,
+    high: f64,
+}
+
+impl Default for Range {
+    fn default() -> Self {
+        Self { low: f64::INFINITY, high: f64::NEG_INFINITY }
+    }
+}
+
+impl Range {
+    fn joined(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+}
+
+/// What a contact did in the steps of a short mean: its impulse without those of impacts, and how long the steps with impacts took, s.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+struct Recent {
+    impulse: [f64; 2],
+    struck_for: f64,
+}
+
+/// Steps of a short mean of a force: those of a bucket of a run in which no two were joined.
+const SHORT: u64 = 2;
 
 /// Steps in a row.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -115,6 +150,8 @@ pub(crate) struct Curves {
     contacts: usize,
     /// `contacts` a bucket.
     works: Vec<Work>,
+    /// The short mean that isn't over yet: its beginning, s, and what each contact did since.
+    short: (f64, Vec<Recent>),
 }
 
 impl Curves {
@@ -122,17 +159,22 @@ impl Curves {
     pub(crate) fn new(capacity: usize, t: f64, start: Vec<f64>, contacts: usize) -> Self {
         Self {
             capacity,
-            stride: 2,
+            stride: SHORT,
             start: (t, start),
             buckets: Vec::new(),
             extremes: Vec::new(),
             contacts,
             works: Vec::new(),
+            short: (t, vec![Recent::default(); contacts]),
         }
     }
 
     /// Enters the values at the end of a step.
     pub(crate) fn enter(&mut self, t: f64, values: &[f64]) {
+        // What contacts did in a step is added after it was entered.
+        if self.buckets.last().is_some_and(|bucket| bucket.steps % SHORT == 0) {
+            self.end_short();
+        }
         match self.buckets.last_mut().filter(|bucket| bucket.steps < self.stride) {
             Some(bucket) => {
                 let lasting = t - bucket.last;
@@ -166,12 +208,36 @@ impl Curves {
         }
     }
 
+    /// Ends the short means at the end of the step entered last.
+    fn end_short(&mut self) {
+        let Some(end) = self.buckets.last().map(|bucket| bucket.last) else { return };
+        let lasting = end - self.short.0;
+        let newest = self.works.len().saturating_sub(self.contacts);
+        for (work, recent) in self.works[newest..].iter_mut().zip(&mut self.short.1) {
+            let recent = std::mem::take(recent);
+            let rest = lasting - recent.struck_for;
+            if rest > NO_REST * lasting {
+                work.range = [0, 1].map(|k| {
+                    let mean = recent.impulse[k] / rest;
+                    work.range[k].joined(Range { low: mean, high: mean })
+                });
+            }
+        }
+        self.short.0 = end;
+    }
+
     /// Adds what a contact did in the step entered last: impulse, state, and by how much it slipped, m.
     #[inline]
     pub(crate) fn add(&mut self, contact: usize, impulse: [f64; 2], of: Of, state: ContactState, slip: f64) {
         let newest = self.works.len().saturating_sub(self.contacts);
         if let Some(work) = self.works[newest..].get_mut(contact) {
             work.enter(impulse, of, state, slip);
+        }
+        if let Some(recent) = self.short.1.get_mut(contact) {
+            match of {
+                Of::Force => (0..2).for_each(|k| recent.impulse[k] += impulse[k]),
+                Of::Impact { lasting } | Of::Reclosure { lasting } => recent.struck_for += lasting,
+            }
         }
     }
 
@@ -217,6 +283,13 @@ impl Curves {
     /// How many buckets there are.
     pub(crate) fn len(&self) -> usize {
         self.buckets.len()
+    }
+
+    /// The curves of a run that has come to its end.
+    pub(crate) fn ended(&self) -> Self {
+        let mut ended = self.clone();
+        ended.end_short();
+        ended
     }
 
     /// The curves in at most so many buckets, or two.
@@ -290,6 +363,29 @@ impl Curves {
         self.buckets.iter().map(|bucket| (bucket.last - bucket.begin) / bucket.steps as f64).fold(0.0, f64::max)
     }
 
+    /// How long the longest of the short means is of which [`ForceCurve::course`] has the least and the largest, s.
+    pub(crate) fn longest_short(&self) -> f64 {
+        SHORT as f64 * self.step()
+    }
+
+    /// The least and the largest of the short means of a contact's normal (0) or tangential (1) force, N, at the times of [`Curves::curve`];
+    /// `means` are those over the buckets. Of each bucket the one first that goes with how these rise or fall.
+    fn course(&self, contact: usize, part: usize, means: &[f64]) -> Vec<f64> {
+        let works = self.works.iter().skip(contact).step_by(self.contacts.max(1));
+        let ends = works.enumerate().flat_map(|(bucket, work)| {
+            let Range { low, high } = work.range[part];
+            let (low, high) = if low <= high { (low, high) } else { (means[bucket], means[bucket]) };
+            let before = means[bucket.saturating_sub(1)];
+            let after = means[(bucket + 1).min(means.len() - 1)];
+            if before <= after { [low, high] } else { [high, low] }
+        });
+        let mut course = vec![0.0];
+        course.extend(ends);
+        // What a contact's force is before the first step is known from that alone.
+        course[0] = course.get(1).copied().unwrap_or(0.0);
+        course
+    }
+
     /// A contact over time; `None` if it never carried anything.
     pub(crate) fn forces(&self, contact: usize) -> Option<ForceCurve> {
         let works = || self.works.iter().skip(contact).step_by(self.contacts.max(1));
@@ -327,18 +423,10 @@ impl Curves {
         let alternates = mixed as f64 > ALTERNATES * touching as f64;
         let strikes = works().any(|work| work.hardest > 0.0);
         let impacts = if strikes { works().map(|work| work.hardest).collect() } else { Vec::new() };
-        let (normal, tangential) = (mean(0), mean(1));
-        Some(ForceCurve {
-            normal,
-            tangential,
-            course: None,
-            slip,
-            state,
-            usual,
-            impacts,
-            alternates,
-            hides_slip: false,
-        })
+        let (normal, tangential): (Vec<f64>, Vec<f64>) = (mean(0), mean(1));
+        let course =
+            self.is_thinned().then(|| [self.course(contact, 0, &normal), self.course(contact, 1, &tangential)]);
+        Some(ForceCurve { normal, tangential, course, slip, state, usual, impacts, alternates, hides_slip: false })
     }
 }
 

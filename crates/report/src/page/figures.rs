@@ -274,7 +274,6 @@ impl Plots<'_> {
         for (pair, contact) in scenery.contacts.iter().enumerate() {
             let (mut normal, mut means, mut tangential, mut bands) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
             let (mut impacts, mut briefly, mut alternates) = (Vec::new(), false, false);
-            let sums = self.panels.sums_tangential(pair);
             // Colours are for those that touch: of all there would be too many.
             let touching = contact.points.iter().zip(curves.iter().zip(&means_of_points).skip(contact.first));
             let touching = touching.filter_map(|(drawn, (forces, mean))| Some((drawn, forces.as_ref()?, mean)));
@@ -286,26 +285,32 @@ impl Plots<'_> {
                     Series::staircase(label, borders.iter().copied().zip(y.iter().map(|y| factor * y)), end)
                         .number(point)
                 };
-                let course = |part: usize, factor: f64| {
-                    let of = |course: &[Vec<f64>; 2]| {
-                        let points = self.t.iter().copied().zip(course[part].iter().map(|y| factor * y));
-                        Series::line(label, points.collect::<Vec<_>>()).number(point)
-                    };
-                    forces.course.as_ref().map(of)
+                let line = |y: &[f64], factor: f64, label: &str| {
+                    let points = self.t.iter().copied().zip(y.iter().map(|y| factor * y));
+                    Series::line(label, points.collect::<Vec<_>>()).number(point)
+                };
+                let course = |part: usize, factor: f64, label: &str| {
+                    forces.course.as_ref().map(|course| line(&course[part], factor, label))
                 };
                 // The raw values stay behind their mean, which then has the name.
                 normal.push(match mean {
-                    Some(_) => step(&forces.normal, factor, "").faint(),
-                    None => course(0, factor).unwrap_or_else(|| step(&forces.normal, factor, label)),
+                    Some(_) => course(0, factor, "").unwrap_or_else(|| step(&forces.normal, factor, "")).faint(),
+                    None => course(0, factor, label).unwrap_or_else(|| step(&forces.normal, factor, label)),
                 });
                 let scaled =
                     |mean: &[f64]| borders.iter().copied().zip(mean.iter().map(|y| factor * y)).collect::<Vec<_>>();
                 means.push(mean.as_deref().map(|mean| Series::line(label, scaled(mean)).number(point)));
-                match (sums, point) {
-                    (false, _) => tangential
-                        .push(course(1, sideways).unwrap_or_else(|| step(&forces.tangential, sideways, label))),
-                    (true, 0) => tangential.push(step(&self.panels.tangential_sum(contact), sideways, "")),
-                    (true, _) => {}
+                match &self.panels.sums[pair] {
+                    None => tangential
+                        .push(course(1, sideways, label).unwrap_or_else(|| step(&forces.tangential, sideways, label))),
+                    Some(sum) if point == 0 => {
+                        tangential.push(if sum.is_course {
+                            line(&sum.y, sideways, "")
+                        } else {
+                            step(&sum.y, sideways, "")
+                        });
+                    }
+                    Some(_) => {}
                 }
                 if !forces.impacts.is_empty() {
                     impacts.push(step(&forces.impacts, self.panels.impulse_unit.1, label));
@@ -331,13 +336,14 @@ impl Plots<'_> {
                     continue;
                 }
                 let (range, cut) = cut_to(cut.map(|(limit, most)| (factor * limit, factor * most)), &lines, &unit);
-                let over = with_digits(self.panels.curves.longest_bucket(), "s", 2);
+                let without = if impacts.is_empty() { "" } else { " without impacts" };
                 let meant = if contact.has_duration {
                     self.panels.told_of_springs()
                 } else if what == "Normal" && means.iter().any(Option::is_some) {
-                    Some(format!("pale: means over {over}; strong: without vibrations of periods below {period}"))
+                    let raw = self.panels.told_of_rigid("");
+                    Some(format!("pale: {raw}; strong: without vibrations of periods below {period}"))
                 } else {
-                    Some(format!("means over {over}{}", if impacts.is_empty() { "" } else { " without impacts" }))
+                    Some(self.panels.told_of_rigid(without))
                 };
                 let many = self.panels.redundant[pair].note(what == "Tangential").map(str::to_owned);
                 let turns = (alternates && what == "Tangential").then(|| "sticks and slips by turns".to_owned());

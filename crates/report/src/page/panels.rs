@@ -147,6 +147,9 @@ pub(crate) struct PortraitLine {
 pub(crate) struct Panels {
     pub(crate) curves: Curves,
     pub(crate) forces: Vec<Option<ForceCurve>>,
+    /// The tangential force of all points of a contact together as it is drawn, N, by contacts: at the times of the curves, or means over the
+    /// buckets. None where the points are drawn one by one.
+    pub(crate) sums: Vec<Option<Sum>>,
     pub(crate) panels: Vec<TimePanel>,
     pub(crate) portraits: Vec<Portrait>,
     pub(crate) left_out: Vec<LeftOut>,
@@ -177,7 +180,8 @@ impl Panels {
                     course
                 };
                 let course = recorder.spring_column(point).map(|column| [column, column + 1].map(from_first_step));
-                Some(ForceCurve { course, ..curves.forces(point)? })
+                let forces = curves.forces(point)?;
+                Some(ForceCurve { course: course.or(forces.course), ..forces })
             };
             (0..recorder.scenery.points).map(of).collect::<Vec<_>>()
         };
@@ -190,6 +194,7 @@ impl Panels {
                 force_units: Vec::new(),
                 impulse_unit: prefix(largest(forces.iter().flatten().flat_map(|forces| &forces.impacts))),
                 redundant: redundant(recorder, &curves, &forces),
+                sums: Vec::new(),
                 curves,
                 forces,
                 panels: Vec::new(),
@@ -197,11 +202,13 @@ impl Panels {
                 left_out: Vec::new(),
                 untraced: Vec::new(),
             };
+            let sums = (0..recorder.scenery.contacts.len()).map(|pair| panels.sum(recorder, pair));
+            panels.sums = sums.collect();
             panels.fill(recorder);
             panels
         };
-        let all = drawn(recorder.kept.curves.clone());
-        let (buckets, numbers) = (all.curves.len(), all.numbers());
+        let all = drawn(recorder.kept.curves.ended());
+        let (buckets, numbers) = (all.curves.len(), all.numbers(recorder));
         if numbers <= NUMBERS {
             return all;
         }
@@ -269,6 +276,36 @@ impl Panels {
         self.curves.is_thinned().then(|| format!("the least and the largest of every {}", over()))
     }
 
+    /// What is to be told of the forces of rigid contacts, without those in steps `without` which they are.
+    pub(crate) fn told_of_rigid(&self, without: &str) -> String {
+        let told = |lasting: f64| with_digits(lasting, "s", 2);
+        match self.told_of_springs() {
+            Some(extremes) => format!("{extremes}, of means over {}{without}", told(self.curves.longest_short())),
+            None => format!("means over {}{without}", told(self.curves.longest_bucket())),
+        }
+    }
+
+    /// The tangential force of all points of a contact together, if it is what is drawn.
+    fn sum(&self, recorder: &PageRecorder, pair: usize) -> Option<Sum> {
+        self.sums_tangential(pair).then_some(())?;
+        let contact = &recorder.scenery.contacts[pair];
+        let own = || self.forces[contact.first..contact.first + contact.points.len()].iter().flatten();
+        let course = if self.curves.is_thinned() {
+            recorder
+                .sum_entry(pair)
+                .and_then(|entry| self.curves.forces(entry)?.course)
+                .map(|[_, tangential]| tangential)
+        } else {
+            // Of springs each step is known.
+            let each: Option<Vec<&[f64]>> = own().map(|of| of.course.as_ref().map(|[_, y]| y.as_slice())).collect();
+            each.map(|each| sum(each.into_iter()))
+        };
+        Some(match course {
+            Some(y) if !y.is_empty() => Sum { y, is_course: true },
+            _ => Sum { y: sum(own().map(|forces| forces.tangential.as_slice())), is_course: false },
+        })
+    }
+
     /// Where the axes of a contact's normal and tangential forces end because peaks dwarf the rest, and the largest ones, N.
     pub(crate) fn cuts_of_contact(
         &self,
@@ -284,13 +321,11 @@ impl Panels {
         let least = LEAST_FORCE * self.strongest();
         let own = self.forces[points.clone()].iter().zip(&means[points]);
         let own = own.filter_map(|(forces, mean)| Some((forces.as_ref()?, mean)));
-        let raw = own.clone().map(|(forces, mean)| (mean.is_some(), forces.normal.as_slice()));
+        let raw = own.clone().map(|(forces, mean)| (mean.is_some(), forces.drawn(0)));
         let normal = raw.chain(own.clone().filter_map(|(_, mean)| Some((false, mean.as_deref()?))));
-        let sum = self.tangential_sum(contact);
-        let tangential = if self.sums_tangential(pair) {
-            cut_at(std::iter::once((false, sum.as_slice())), least)
-        } else {
-            cut_at(own.map(|(forces, _)| (false, forces.tangential.as_slice())), least)
+        let tangential = match &self.sums[pair] {
+            Some(sum) => cut_at(std::iter::once((false, sum.y.as_slice())), least),
+            None => cut_at(own.map(|(forces, _)| (false, forces.drawn(1))), least),
         };
         [cut_at(normal, least), tangential]
     }
@@ -300,19 +335,16 @@ impl Panels {
         self.forces.iter().flatten().flat_map(|forces| &forces.normal).fold(0.0, |most: f64, f| f.max(most))
     }
 
-    /// The tangential force of a contact over all its points, N, by buckets.
-    pub(crate) fn tangential_sum(&self, contact: &ContactDrawn) -> Vec<f64> {
-        sum(self.forces[contact.first..contact.first + contact.points.len()].iter().flatten())
-    }
-
-    /// How many numbers the curves take on the page.
-    fn numbers(&self) -> usize {
+    /// How many numbers the curves take on the page. The extremes of forces that rigid contacts have beside their means don't count: packed as they are,
+    /// they make it no larger than is allowed, and with them all curves of a long run would be half as fine.
+    fn numbers(&self, recorder: &PageRecorder) -> usize {
         let lines = self.panels.iter().flat_map(|panel| &panel.lines).map(|line| line.y.len()).sum::<usize>();
         let portraits = self.portraits.iter().flat_map(|portrait| &portrait.lines).map(|line| 3 * line.t.len());
         let of_course = |forces: &ForceCurve| forces.course.iter().flatten().map(Vec::len).sum::<usize>();
+        let of_springs = recorder.springs.iter().filter_map(|point| self.forces[*point].as_ref()).map(of_course);
         let forces = self.forces.iter().flatten();
-        let forces = forces.map(|forces| 3 * forces.normal.len() + of_course(forces) + forces.impacts.len());
-        lines + portraits.sum::<usize>() + forces.sum::<usize>() + 3 * self.curves.len()
+        let forces = forces.map(|forces| 3 * forces.normal.len() + forces.impacts.len());
+        lines + portraits.sum::<usize>() + forces.sum::<usize>() + of_springs.sum::<usize>() + 3 * self.curves.len()
     }
 
     /// Notes that `what` isn't drawn: of whom, if it isn't of the whole scene, and what these are called together; its largest value and its scale.
@@ -336,12 +368,20 @@ impl Panels {
     }
 }
 
-/// The tangential force of several points together, N, by buckets.
-fn sum<'a>(points: impl Iterator<Item = &'a ForceCurve>) -> Vec<f64> {
-    let add = |mut total: Vec<f64>, forces: &ForceCurve| {
-        total.resize(forces.tangential.len(), 0.0);
-        total.iter_mut().zip(&forces.tangential).for_each(|(total, force)| *total += force);
+/// The tangential force of all points of a contact together, N.
+#[derive(Debug)]
+pub(crate) struct Sum {
+    pub(crate) y: Vec<f64>,
+    /// Whether its times are those of the curves, not the buckets.
+    pub(crate) is_course: bool,
+}
+
+/// Curves at the same times together.
+fn sum<'a>(curves: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
+    let add = |mut total: Vec<f64>, curve: &[f64]| {
+        total.resize(curve.len(), 0.0);
+        total.iter_mut().zip(curve).for_each(|(total, force)| *total += force);
         total
     };
-    points.fold(Vec::new(), add)
+    curves.fold(Vec::new(), add)
 }

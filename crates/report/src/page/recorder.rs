@@ -138,6 +138,9 @@ pub struct PageRecorder {
     pub(crate) end: f64,
     /// The contact points with springs, whose normal and tangential forces have columns of their own in the curves, before [`Self::sections`].
     pub(crate) springs: Vec<usize>,
+    /// By contact pairs: where after the contact points in the curves the forces of all of its points together are, as the sum of extremes is none
+    /// of the sum.
+    sums: Vec<Option<usize>>,
     /// What beams bear, after all other columns of the curves.
     pub(crate) sections: Vec<Column>,
     /// What beams bore in the whole run; nothing before its end.
@@ -174,10 +177,17 @@ impl PageRecorder {
             with_springs.flat_map(|contact| contact.first..contact.first + contact.points.len()).collect();
         let columns = scenery.driven_column(scenery.driven.len()) + 2 * springs.len() + sections.len();
         let points = scenery.points;
+        let mut entries = points;
+        let sum_of = |contact: &ContactDrawn| {
+            let has_sum = contact.has_friction && contact.points.len() > 1;
+            entries += usize::from(has_sum);
+            has_sum.then(|| entries - 1)
+        };
+        let sums = scenery.contacts.iter().map(sum_of).collect();
         let even = |n: usize| n - n % 2;
         let capacity = |most: usize, width: usize| even((NUMBERS / width).clamp(10, most));
         // What is drawn of it is known at the end only: then there may be fewer buckets.
-        let bucket_capacity = even((KEPT_NUMBERS / (2 * columns + 3 * points + 3)).clamp(10, BUCKETS));
+        let bucket_capacity = even((KEPT_NUMBERS / (2 * columns + 3 * entries + 3)).clamp(10, BUCKETS));
         let pictures = if scenery.is_crowded() {
             even((PACKED_NUMBERS / (frame + 1)).clamp(10, FRAMES))
         } else {
@@ -191,7 +201,7 @@ impl PageRecorder {
                 } else {
                     Network::default()
                 },
-                curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], points),
+                curves: Curves::new(bucket_capacity, 0.0, vec![0.0; columns], entries),
                 orbits: Vec::new(),
                 impacts: Vec::new(),
                 impact_count: 0,
@@ -201,6 +211,7 @@ impl PageRecorder {
             bucket_capacity,
             end: scene.time.steps() as f64 * scene.time.step,
             springs,
+            sums,
             sections,
             beams: Vec::new(),
             points_of_no_return: points_of_no_return(scene),
@@ -236,6 +247,16 @@ impl PageRecorder {
     /// The column of a contact point's normal force, before that of the tangential one, if it has springs.
     pub(crate) fn spring_column(&self, point: usize) -> Option<usize> {
         Some(self.first_spring() + 2 * self.springs.binary_search(&point).ok()?)
+    }
+
+    /// How many contact points and pairs with a sum over them the curves have.
+    fn entries(&self) -> usize {
+        self.scenery.points + self.sums.iter().flatten().count()
+    }
+
+    /// Where in the curves the forces of all points of a pair together are, if it has several.
+    pub(crate) fn sum_entry(&self, pair: usize) -> Option<usize> {
+        self.sums[pair]
     }
 
     /// What tells a curve of what beams bear from others of its kind: the place, and the beam where there are several.
@@ -381,6 +402,7 @@ impl PageRecorder {
             let strikers = if step.active().any(|other| is_instant(&other)) { &[] } else { closed };
             self.find_struck(part.contacts, part.end, strikers);
             let is_impact = closed.iter().any(|of| of.closing == Closing::Impact && of.t == part.end);
+            let mut before = None;
             for contact in part.contacts {
                 let Some((pair, point)) = place(&self.layout, contact) else { continue };
                 let Some(drawn) = self.scenery.contacts.get(pair) else { continue };
@@ -393,6 +415,16 @@ impl PageRecorder {
                     true => Of::Reclosure { lasting },
                     false => Of::Force,
                 };
+                if let Some(sum) = self.sums[pair] {
+                    // The points of a pair follow each other; the time is that of the first.
+                    let of = match of {
+                        Of::Impact { .. } if before == Some(pair) => Of::Impact { lasting: 0.0 },
+                        Of::Reclosure { .. } if before == Some(pair) => Of::Reclosure { lasting: 0.0 },
+                        of => of,
+                    };
+                    self.kept.curves.add(sum, [contact.p[0], contact.p[1]], of, ContactState::Open, 0.0);
+                }
+                before = Some(pair);
                 let slip = slip(contact, part.duration, part.balance);
                 let (point, state) = (drawn.first + point, contact.state());
                 self.kept.curves.add(point, [contact.p[0], contact.p[1]], of, ContactState::Open, slip);
@@ -542,7 +574,7 @@ impl Observer<2> for PageRecorder {
         self.take_frame(state);
         self.take_row(state);
         self.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
-        self.kept.curves = Curves::new(self.bucket_capacity, state.t, self.row.clone(), self.scenery.points);
+        self.kept.curves = Curves::new(self.bucket_capacity, state.t, self.row.clone(), self.entries());
         let drawn = if self.scenery.is_crowded() { 0 } else { self.scenery.blocks.len() };
         // Not clones of one, which would lack its capacity.
         self.kept.orbits = (0..BLOCK_COORDINATES * drawn).map(|_| Orbit::default()).collect();

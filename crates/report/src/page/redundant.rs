@@ -70,9 +70,10 @@ pub(super) fn redundant(recorder: &PageRecorder, curves: &Curves, forces: &[Opti
         let states = states(contact, bucket);
         let sticking = states.iter().filter(|state| **state == ContactState::Stick).count();
         let pressing = states.iter().filter(|state| **state != ContactState::Open).count();
-        // The fibre of a beam takes one foot to the limit of friction while the other holds the block.
-        let sharing = if contact.beam.is_some() && sticking > 0 { pressing } else { sticking };
-        sharing > 1 && contact.has_friction && !contact.has_duration
+        // The fibre of a beam takes one foot to the limit of friction while the other holds the block, and so does the sway of a block on springs.
+        let sharing =
+            if (contact.beam.is_some() || contact.has_duration) && sticking > 0 { pressing } else { sticking };
+        sharing > 1 && contact.has_friction
     };
     let looks: Vec<Vec<bool>> = buckets
         .iter()

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod energy;
+mod extremes;
 mod headlines;
 mod impacts;
 mod lintel;

@@ -9,7 +9,8 @@ pub(crate) struct ForceCurve {
     pub(crate) normal: Vec<f64>,
     /// Mean tangential force, N, alike.
     pub(crate) tangential: Vec<f64>,
-    /// Of springs: their normal and their tangential force, N, at the times of [`Curves::curve`](super::Curves::curve), with all their peaks.
+    /// Its normal and its tangential force, N, at the times of [`Curves::curve`](super::Curves::curve): of springs with all their peaks, of
+    /// others, where a bucket has more steps than those of a short mean, the least and the largest of these. None where the means say all.
     pub(crate) course: Option<[Vec<f64>; 2]>,
     /// Tangential displacement while it pressed, from the start to the end of the bucket, m.
     pub(crate) slip: Vec<f64>,
@@ -25,6 +26,10 @@ pub(crate) struct ForceCurve {
     pub(crate) hides_slip: bool,
 }
 
+/// What slips by no more than rounding at the beginning or the end of a slide is drawn as sticking if it takes more than this part of the run: so long
+/// that it is seen.
+const TREMBLES: usize = 100;
+
 /// What a contact does in a bucket, as it is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Does {
@@ -36,7 +41,7 @@ pub(crate) enum Does {
 }
 
 impl ForceCurve {
-    /// Its normal (0) or tangential (1) force as it is drawn, N: of springs the course, of others means.
+    /// Its normal (0) or tangential (1) force as it is drawn, N: the course, or means where there is none.
     pub(crate) fn drawn(&self, part: usize) -> &[f64] {
         match &self.course {
             Some(course) => &course[part],
@@ -84,6 +89,25 @@ impl ForceCurve {
             if !(slipped > rounding) {
                 self.hides_slip |= from < to;
                 self.state[from..to].fill(ContactState::Stick);
+            } else {
+                // It may tremble for long before it goes, or after.
+                let long = (self.state.len() / TREMBLES).max(2);
+                let mut sum = 0.0;
+                let trembles = |k: &usize| {
+                    sum += (self.slip[*k] - before(*k)).abs();
+                    sum <= rounding
+                };
+                let first = (from..to).take_while(trembles).count();
+                let mut sum = 0.0;
+                let trembles = |k: &usize| {
+                    sum += (self.slip[*k] - before(*k)).abs();
+                    sum <= rounding
+                };
+                let last = (from..to).rev().take_while(trembles).count();
+                for part in [from..from + first, to - last..to].into_iter().filter(|part| part.len() > long) {
+                    self.hides_slip = true;
+                    self.state[part].fill(ContactState::Stick);
+                }
             }
             from = to + 1;
         }
@@ -145,6 +169,21 @@ mod tests {
             ([Stick, Stick, Open, Stick, Stick, Stick].to_vec(), true)
         );
         assert_eq!(of([0.0, 0.0, 0.0, 0.0, 1e-3, 2e-3]), ([Stick, Stick, Open, Stick, Slip, Slip].to_vec(), true));
+        // It trembles by less than that for long before it slides.
+        let mut trembles = ForceCurve {
+            normal: vec![1.0; 12],
+            tangential: vec![0.0; 12],
+            course: None,
+            slip: (0..12).map(|k| if k < 9 { 1e-10 * f64::from(k % 2) } else { 1e-3 * f64::from(k - 8) }).collect(),
+            state: vec![Slip; 12],
+            usual: Vec::new(),
+            impacts: Vec::new(),
+            alternates: false,
+            hides_slip: false,
+        };
+        trembles.stick_within(1e-9);
+        assert_eq!(trembles.state, [vec![Stick; 9], vec![Slip; 3]].concat());
+        assert!(trembles.hides_slip);
         // To and fro it comes back to where it was, but has slipped.
         assert_eq!(of([1e-3, 0.0, 0.0, 0.0, 0.0, 0.0]), ([Slip, Slip, Open, Stick, Stick, Stick].to_vec(), true));
     }

@@ -175,6 +175,8 @@ pub(super) struct ForceData {
     /// What the plots of forces of springs show, if not each step.
     #[serde(skip_serializing_if = "Option::is_none")]
     springs: Option<String>,
+    /// What those of forces of rigid contacts show.
+    rigid: String,
     /// The unit of `impacts`: the prefix, and by what N s are multiplied.
     impulse_unit: (&'static str, f64),
     /// Where the axes of normal and tangential forces end if peaks are cut, by contacts, in their units.
@@ -190,12 +192,18 @@ pub(super) struct ForceData {
     /// Contacts whose points share their tangential force in one of many ways, of which the sum over the points is plotted.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     shares: Vec<usize>,
+    /// These sums, with their contacts, where they are at the times of the curves.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    sums: Vec<(usize, Column)>,
     /// Contacts that stick and slip by turns, of which the band shows what they do in most of a stretch.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     alternating: Vec<usize>,
     /// Contacts that slip by so little in a stretch that it is drawn as sticking, with the most of it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     unseen_slip: Vec<(usize, String)>,
+    /// Contacts with springs.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    compliant: Vec<usize>,
     points: Vec<PointForces>,
 }
 
@@ -208,7 +216,7 @@ struct PointForces {
     #[serde(skip_serializing_if = "Option::is_none")]
     mean: Option<Column>,
     tangential: Column,
-    /// Of springs: both forces at the times of the curves, as they are plotted.
+    /// Both forces at the times of the curves, as they are plotted where means over the stretches would lose their peaks.
     #[serde(skip_serializing_if = "Option::is_none")]
     course: Option<[SeriesData; 2]>,
     /// The largest normal impulse of an impact, N s.
@@ -286,20 +294,15 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
             normal: Column::of(&forces.normal, SEEN_BELOW_PEAKS),
             mean: means[drawn.first + point].as_ref().map(|means| Column::of(means, SEEN)),
             tangential: Column::of(&forces.tangential, SEEN_BELOW_PEAKS),
-            course: forces.course.as_ref().and_then(|course| {
-                let column = recorder.spring_column(drawn.first + point)?;
+            course: forces.course.as_ref().map(|course| {
+                let column = recorder.spring_column(drawn.first + point);
                 let of = |part: usize| {
-                    let source = Source { column: column + part, zero: 0.0, factor: 1.0 };
-                    let line = Line {
-                        label: String::new(),
-                        number: 0,
-                        y: course[part].clone(),
-                        is_raw: false,
-                        of: Some(source),
-                    };
-                    SeriesData::of(&line, recorder, panels, 0.0, SEEN)
+                    let source = column.map(|column| Source { column: column + part, zero: 0.0, factor: 1.0 });
+                    let line =
+                        Line { label: String::new(), number: 0, y: course[part].clone(), is_raw: false, of: source };
+                    SeriesData::of(&line, recorder, panels, 0.0, if column.is_some() { SEEN } else { SEEN_BELOW_PEAKS })
                 };
-                Some([of(0), of(1)])
+                [of(0), of(1)]
             }),
             impacts: (!forces.impacts.is_empty()).then(|| Column::of(&forces.impacts, SEEN)),
             state: state.collect(),
@@ -310,12 +313,18 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         |drawn: &ContactDrawn| panels.forces[drawn.first..drawn.first + drawn.points.len()].iter().flatten();
     let hiding = contacts().filter(|(_, drawn)| forces_of(drawn).any(|forces| forces.hides_slip));
     let alternating = contacts().filter(|(_, drawn)| forces_of(drawn).any(|forces| forces.alternates));
+    let sums = panels
+        .sums
+        .iter()
+        .enumerate()
+        .filter_map(|(pair, sum)| Some((pair, sum.as_ref().filter(|sum| sum.is_course)?)));
     ForceData {
         names: recorder.scenery.contacts.iter().map(|contact| recorder.pair_name(contact)).collect(),
         borders: panels.curves.borders().into_iter().map(time).collect(),
         units: panels.force_units.clone(),
         period,
         bucket: with_digits(panels.curves.longest_bucket(), "s", 2),
+        rigid: panels.told_of_rigid(""),
         springs: panels.told_of_springs().filter(|_| !recorder.springs.is_empty()),
         impulse_unit: panels.impulse_unit,
         cuts: (0..recorder.scenery.contacts.len()).map(cuts).collect(),
@@ -323,8 +332,10 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         frictionless: (0..panels.tangential.len()).filter(|pair| !panels.tangential[*pair]).collect(),
         redundant: (0..panels.redundant.len()).filter(|pair| panels.redundant[*pair].forces).collect(),
         shares: (0..panels.redundant.len()).filter(|pair| panels.sums_tangential(*pair)).collect(),
+        sums: sums.map(|(pair, sum)| (pair, Column::of(&sum.y, SEEN_BELOW_PEAKS))).collect(),
         alternating: alternating.map(|(pair, _)| pair).collect(),
         unseen_slip: hiding.map(|(pair, drawn)| (pair, with_digits(unseen_slip(recorder, drawn), "m", 1))).collect(),
+        compliant: contacts().filter(|(_, drawn)| drawn.has_duration).map(|(pair, _)| pair).collect(),
         points: points.collect(),
     }
 }

@@ -140,10 +140,24 @@ pub(super) fn rocking(
     });
     html.push_str("Next peak / previous has a dash after a previous peak of less than a hundredth of the critical angle, and where one of the two isn’t known. \
         Passages between two peaks below a thousandth of the critical angle are left out. ");
-    html.push_str(if hits && cycles.iter().any(is_on_beam) {
-        "On a beam no ω⁺/ω⁻ is given: the beam springs back, so that what is one impact on rigid ground goes on over several bounces, and the velocities \
+    if hits && cycles.iter().any(is_on_beam) {
+        // A ratio beside it is that of another block.
+        let mut bodies: Vec<&str> =
+            cycles.iter().filter(|cycle| is_on_beam(cycle)).map(|of| of.body.as_str()).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        let whose = if ratios {
+            format!("Of {}, on a beam, no", escaped(&bodies.join(", ")))
+        } else {
+            "On a beam no".to_owned()
+        };
+        let _ = write!(
+            html,
+            "{whose} ω⁺/ω⁻ is given: the beam springs back, so that what is one impact on rigid ground goes on over several bounces, and the velocities \
          before and after one of them don’t tell what is lost. The decay from peak to peak does, but for loads that act meanwhile."
-    } else if on_blocks {
+        );
+    }
+    html.push_str(if on_blocks || cycles.iter().any(is_on_beam) {
         ""
     } else if hits && !scenery.driven.is_empty() {
         "A base that gives way spreads the loss over the half cycle: the ratio is then nearer to 1."

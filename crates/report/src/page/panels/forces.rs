@@ -3,7 +3,7 @@
 use super::{ForceCurve, Line, Measure, Panels, Place, TimePanel};
 use crate::page::content::{ROUNDING, holds, largest};
 use crate::page::recorder::PageRecorder;
-use crate::page::scenery::ContactDrawn;
+use crate::page::scenery::{ContactDrawn, PointDrawn};
 use teeter_integrator::ContactState;
 
 /// Scale of slip, in sizes of a block: the rounding of each step adds up over a run, and that of what sticks under impacts all the more.
@@ -20,6 +20,19 @@ pub(crate) fn unseen_slip(recorder: &PageRecorder, contact: &ContactDrawn) -> f6
 /// An impulse of up to this many times what a step of the force beside it gives is none of an impact: forces are means, which those of single steps
 /// exceed.
 const OF_STEP: f64 = 2.0;
+
+/// Feet of a block that slip by amounts that differ by more than this part of the largest don't slide together.
+const APART: f64 = 0.05;
+
+/// What is to be known of slip then.
+const WHILE_IT_PRESSES: &str = "a foot's slip counts only while it presses, not what the block moves meanwhile";
+
+/// Whether the points of a contact slip by different amounts in all.
+fn differ(points: &[(usize, &PointDrawn, &ForceCurve)]) -> bool {
+    let slips = || points.iter().filter_map(|(_, _, forces)| forces.slip.last().copied());
+    let (low, high) = (slips().fold(f64::INFINITY, f64::min), slips().fold(f64::NEG_INFINITY, f64::max));
+    high - low > APART * high.abs().max(low.abs())
+}
 
 impl Panels {
     /// Slip of the contacts; and whether their forces are worth a plot. Those that aren't are dropped.
@@ -55,10 +68,9 @@ impl Panels {
                 self.forces[contact.first..contact.first + contact.points.len()].fill(None);
                 continue;
             }
-            let force = if self.sums_tangential(pair) {
-                largest(&self.tangential_sum(contact))
-            } else {
-                largest(points.iter().flat_map(|(_, _, forces)| &forces.tangential))
+            let force = match &self.sums[pair] {
+                Some(sum) => largest(&sum.y),
+                None => largest(points.iter().flat_map(|(_, _, forces)| &forces.tangential)),
             };
             self.tangential[pair] = holds(force, strongest);
             if !self.tangential[pair] {
@@ -88,7 +100,7 @@ impl Panels {
             });
             panels.push(TimePanel {
                 id: format!("slip-{pair}"),
-                note: None,
+                note: differ(&points).then(|| WHILE_IT_PRESSES.to_owned()),
                 title: "Slip".to_owned(),
                 of_contact: Some((pair, if several { name } else { String::new() })),
                 description: "Slip of the contacts over time".to_owned(),
