@@ -1,4 +1,4 @@
-//! Wording of messages: that of every document, and of beams.
+//! Wording of messages: that of every document, and of beams and loads.
 
 use crate::scene::{BeamScene, LoadKind, Scene};
 use teeter_beam::Support;

@@ -1,12 +1,15 @@
 //! Touches that begin and end within a step of the method.
 
 use super::EventDriven;
-use super::events::{FASTER, Open};
+use super::events::Open;
 use super::instant::{Known, Watch};
 use crate::gap_cubic::GapCubic;
 use crate::moreau_jean_located::rate_at;
 use crate::{Model, StepError, Workspace};
 use teeter_detect::{Candidate, ContactId};
+
+/// A low of a gap this close to an end of the step, as a part of it, belongs to that end.
+const AT_END: f64 = 0.01;
 
 /// A contact that goes beside its surface in a step is looked at this part of the rest after its touch.
 const SOON_AFTER: f64 = 0.05;
@@ -31,11 +34,10 @@ impl EventDriven {
             }
             let tolerance = self.located.tolerance(q);
             let [cubic, meet] = GapCubic::new([gap, candidate.gap], [rate, end_rate], h).lows();
-            let is_low = |(s, low): (f64, f64)| s > 0.01 && s < 0.99 && low < -tolerance;
-            if is_low(cubic) {
+            if is_low(cubic, tolerance) {
                 return Ok(Some(cubic.0 * h));
             }
-            if !is_low(meet) {
+            if !is_low(meet, tolerance) {
                 continue;
             }
             // On the straight way from start to end: near enough to tell whether two bodies pass through each other.
@@ -55,15 +57,15 @@ impl EventDriven {
     fn dip_by_another(&mut self, model: &Model<2>, h: f64, work: &mut Workspace<2>) -> Result<Option<f64>, StepError> {
         let (nq, nv) = (model.size().q, model.size().v);
         let (q, v) = (&self.rk.end[..nq], &self.rk.end[nq..nq + nv]);
-        let is_near = |open: &Open| !open.is_prescribed && open.gap >= 0.0 && open.gap < -FASTER * h * open.rate;
-        if !self.open.iter().any(is_near) {
+        let arrives = |open: &Open| open.may_touch_within(h);
+        if !self.open.iter().any(arrives) {
             return Ok(None);
         }
         self.leaving.clear();
         // Those of the step's end still.
         for candidate in &work.candidates {
-            let approaches = |open: &Open| open.id != candidate.id && is_near(open);
-            if candidate.gap < 0.0 || !of_pair(&self.open, candidate.id).iter().any(approaches) {
+            let another_arrives = |open: &Open| open.id != candidate.id && arrives(open);
+            if candidate.gap < 0.0 || !of_pair(&self.open, candidate.id).iter().any(another_arrives) {
                 continue;
             }
             let rate = rate_at(&mut self.smooth.stage, model, q, candidate, v)?;
@@ -73,22 +75,17 @@ impl EventDriven {
         }
         let tolerance = self.located.tolerance(q);
         for end in &self.leaving {
-            for start in of_pair(&self.open, end.id).iter().filter(|open| open.id != end.id && is_near(open)) {
-                let [_, (s, low)] = GapCubic::new([start.gap, end.gap], [start.rate, end.rate], h).lows();
-                if !(s > 0.01 && s < 0.99 && low < -tolerance) {
+            for start in of_pair(&self.open, end.id).iter().filter(|open| open.id != end.id && arrives(open)) {
+                let [_, meet] = GapCubic::new([start.gap, end.gap], [start.rate, end.rate], h).lows();
+                if !is_low(meet, tolerance) {
                     continue;
                 }
-                place_on_way([&self.y, &self.rk.end], nq, nv, s, h, &mut self.way);
+                place_on_way([&self.y, &self.rk.end], nq, nv, meet.0, h, &mut self.way);
                 work.detect(model, &self.way, 0.0)?;
-                let is_new = |touch: &Candidate<2>| {
-                    let at = self.open.binary_search_by_key(&touch.id, |open| open.id);
-                    let level = at.map_or(0.0, |at| self.open[at].gap.min(0.0));
-                    touch.id.pair() == end.id.pair()
-                        && touch.gap < level - tolerance
-                        && !self.smooth.contacts.iter().any(|contact| contact.id == touch.id)
-                };
-                if work.candidates.iter().any(is_new) {
-                    return Ok(Some(s * h));
+                let closes =
+                    |touch: &Candidate<2>| touch.id.pair() == end.id.pair() && self.closes(touch, tolerance).is_some();
+                if work.candidates.iter().any(closes) {
+                    return Ok(Some(meet.0 * h));
                 }
             }
         }
@@ -100,9 +97,8 @@ impl EventDriven {
     fn dip_beside(&mut self, model: &Model<2>, h: f64, work: &mut Workspace<2>) -> Result<Option<f64>, StepError> {
         let (nq, nv) = (model.size().q, model.size().v);
         let is_gone = |open: &&Open| work.candidates.binary_search_by_key(&open.id, |candidate| candidate.id).is_err();
-        let arrives = |open: &&Open| !open.is_prescribed && open.gap >= 0.0 && open.gap < -FASTER * h * open.rate;
         self.ids.clear();
-        self.ids.extend(self.open.iter().filter(arrives).filter(is_gone).map(|open| open.id));
+        self.ids.extend(self.open.iter().filter(|open| open.may_touch_within(h)).filter(is_gone).map(|open| open.id));
         if self.ids.is_empty() {
             return Ok(None);
         }
@@ -122,6 +118,11 @@ impl EventDriven {
         }
         Ok(shortest)
     }
+}
+
+/// Whether a gap is below 0 where it is lowest, at a part of the step, and that is within the step.
+fn is_low((s, low): (f64, f64), tolerance: f64) -> bool {
+    s > AT_END && s < 1.0 - AT_END && low < -tolerance
 }
 
 /// Of contacts in order of identity those of the pair of this one.

@@ -21,6 +21,13 @@ pub(super) struct Open {
     pub(super) is_prescribed: bool,
 }
 
+impl Open {
+    /// Whether it may touch within `h` (s), and isn't prescribed to.
+    pub(super) fn may_touch_within(&self, h: f64) -> bool {
+        !self.is_prescribed && self.gap >= 0.0 && self.gap < -FASTER * h * self.rate
+    }
+}
+
 /// Forces and distances from the friction cone are 0 to this, in parts of their scale.
 const FORCE: f64 = 1e-11;
 
@@ -39,7 +46,7 @@ const MOST_HALVINGS: u32 = 20;
 
 /// A contact that isn't there at the end of a step may have touched if it approached so many times as fast as it did
 /// at the start; and no body moves so many times as fast within a step as at its ends.
-pub(super) const FASTER: f64 = 4.0;
+const FASTER: f64 = 4.0;
 
 /// Searches for an event before the one that was found: one does, where corners follow each other.
 const MOST_EARLIER: usize = 20;
@@ -363,7 +370,7 @@ impl EventDriven {
     }
     /// Of a contact that was open at the start of the step and is inside its surface where the step ends: its gap (m)
     /// and rate (m/s) at the start, and the gap at which it closes (m).
-    fn closes(&self, candidate: &Candidate<2>, tolerance: f64) -> Option<[f64; 3]> {
+    pub(super) fn closes(&self, candidate: &Candidate<2>, tolerance: f64) -> Option<[f64; 3]> {
         if candidate.gap >= -tolerance || self.smooth.contacts.iter().any(|contact| contact.id == candidate.id) {
             return None;
         }
