@@ -6,6 +6,7 @@
 //! [`MoreauJeanClosed`](crate::MoreauJeanClosed).
 
 mod guard;
+mod summits;
 mod together;
 
 pub(crate) use together::moving;
@@ -44,6 +45,11 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     q_ahead: Vec<f64>,
     /// q̃_m.
     q_mid: Vec<f64>,
+    /// Summits that press; memory.
+    summits: Vec<ContactId>,
+    /// The mean velocity of the motion that was tried, and the coordinates in its middle; memory.
+    mean: Vec<f64>,
+    q_turned: Vec<f64>,
     middle: Candidates<D>,
     /// Of each of these, at q̃_m and at q̃, how far it is to the end of its surface, m.
     rooms: [Vec<f64>; 2],
@@ -116,6 +122,9 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             v_free: Vec::new(),
             q_ahead: Vec::new(),
             q_mid: Vec::new(),
+            mean: Vec::new(),
+            summits: Vec::new(),
+            q_turned: Vec::new(),
             middle: Vec::new(),
             rooms: [const { Vec::new() }; 2],
             goes_past_ends: false,
@@ -168,7 +177,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.found_rooms.reserve(contacts);
         self.pieces.iter_mut().for_each(|pieces| pieces.reserve(1));
         self.grazing.reserve(contacts);
-        for ids in [&mut self.closed, &mut self.looked, &mut self.new] {
+        for ids in [&mut self.closed, &mut self.looked, &mut self.new, &mut self.summits] {
             ids.reserve(contacts);
         }
         for of_bodies in [&mut self.depths, &mut self.landings] {
@@ -237,20 +246,38 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         if self.looked.len() < self.closed.len() {
             self.look_ahead(model, from, span.h, work)?;
         }
+        let mut rounds = 0;
         let outcome = loop {
-            let outcome =
-                self.solve(model, from, span, work).map_err(|source| StepError::Problem { t: from.t, source })?;
-            // Frames and gaps stay those of the first round: its fixed point is then that of one
-            // problem.
-            if !self.step.takes_another_round(model, from, span.h, work) {
-                break self.step.judge(outcome, work.settings.tolerance);
+            let outcome = self.solve_to_its_end(model, from, span, work)?;
+            rounds += 1;
+            if rounds == summits::MOST_ROUNDS || !self.summits_have_moved(model, from, span.h, work)? {
+                break outcome;
             }
-            self.v_free.copy_from_slice(self.step.v_end());
-            self.stage.keep_islands_anew();
         };
         self.step.end(model, from, span.h)?;
         work.detect(model, self.step.q_end(), 0.0)?;
         Ok(outcome)
+    }
+
+    /// Solves the step until its motion beside the contacts is found, too.
+    fn solve_to_its_end(
+        &mut self,
+        model: &Model<D>,
+        from: &State,
+        span: &StepSpan,
+        work: &mut Workspace<D>,
+    ) -> Result<Option<Outcome>, StepError> {
+        loop {
+            let outcome =
+                self.solve(model, from, span, work).map_err(|source| StepError::Problem { t: from.t, source })?;
+            // Frames and gaps stay the same in these rounds: their fixed point is then that of one
+            // problem.
+            if !self.step.takes_another_round(model, from, span.h, work) {
+                return Ok(self.step.judge(outcome, work.settings.tolerance));
+            }
+            self.v_free.copy_from_slice(self.step.v_end());
+            self.stage.keep_islands_anew();
+        }
     }
 
     /// Attempts until no open contact sinks in.
@@ -303,6 +330,8 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
     fn resize(&mut self, model: &Model<D>) {
         self.v_free.resize(model.size().v, 0.0);
         self.q_mid.resize(model.size().q, 0.0);
+        self.mean.resize(model.size().v, 0.0);
+        self.q_turned.resize(model.size().q, 0.0);
         self.q_ahead.resize(model.size().q, 0.0);
         if self.rigid.len() != model.parts().len() {
             self.find_what_is_rigid(model);
