@@ -333,7 +333,7 @@ pub static TABLES: &[TableSchema] = &[
             ROUNDING, CHAMFER,
             key("depth", SIZE, RequiredWithout("mass"), "\"3 cm\"", "Depth out of the plane."),
             key("mass", Kind::Quantity(Dimension::MASS, Range::POSITIVE), Optional, "\"2 kg\"", "Mass, instead of material and depth; together with inertia."),
-            key("inertia", Kind::Quantity(Dimension::INERTIA, Range::POSITIVE.sizes(1e-18, 1e12)), Optional, "\"3e-4 kg m^2\"", "Moment of inertia about the mass centre, which is that of the shape; together with mass."),
+            key("inertia", Kind::Quantity(Dimension::INERTIA, Range::POSITIVE.sizes(1e-18, 1e12)), Optional, "\"3e-4 kg m^2\"", "Moment of inertia about the mass centre, which is that of the shape; together with mass. It is refused if it is more than that of all the mass at the furthest point of the shape."),
             key("on", Kind::Name, Optional, "\"table\"", "The body that it stands on: a beam, \"ground\", or another block, on whose upper side it is placed."),
             key("at", Kind::Quantity(Dimension::LENGTH, Range::ANY), Optional, "\"18 cm\"", "Position x, in the world, of the midpoint of its base before it is tilted; the base is its lowest side, or lowest point."),
             key("tilt", Kind::Quantity(Dimension::ANGLE, QUARTER_TURN), DefaultWith { sibling: "on", value: "\"0 deg\"" }, "\"5 deg\"", "Rotation about the end of its base on which it then stands, counter-clockwise positive; it is placed such that its lowest point touches."),

@@ -293,7 +293,10 @@ impl Judge<'_> {
         let text = self.text(key, path, node)?;
         match name_rule(&text) {
             Some(rule) => {
-                self.blame(node, path, rule);
+                let found = self.blame(node, path, rule);
+                if text.contains(['*', '?']) {
+                    found.remedy = Some("give one name: no patterns are possible here".to_owned());
+                }
                 None
             }
             None => Some(text),
