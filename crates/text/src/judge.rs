@@ -119,8 +119,11 @@ impl Judge<'_> {
                 };
                 self.pair_of(key, path, node, read).map(Value::TextPair)
             }
-            Kind::Names => {
-                let read = |judge: &mut Self, item: &Node| judge.name(key, path, item);
+            Kind::Names | Kind::Patterns => {
+                let read = |judge: &mut Self, item: &Node| match key.kind {
+                    Kind::Names => judge.name(key, path, item),
+                    _ => judge.pattern(key, path, item),
+                };
                 let names = self.list_of(key, path, node, read)?;
                 if names.is_empty() {
                     self.blame(node, path, "must have one name or more").remedy = Some(expected(key));

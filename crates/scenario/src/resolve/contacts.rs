@@ -141,7 +141,11 @@ impl Resolver<'_, '_> {
         };
         if self.doc.text_pairs("world.apart").is_some_and(|pairs| pairs.iter().any(is_apart)) {
             let rule = format!("the block stands on `{on}`, but world.apart says that the two don't touch");
-            self.error(path, rule, "leave that pair out of apart, or give position (and angle) instead of on, at and tilt");
+            self.error(
+                path,
+                rule,
+                "leave that pair out of apart, or give position (and angle) instead of on, at and tilt",
+            );
             return;
         }
         let rule = format!("the block stands on `{on}`, but there is no contact between the two");

@@ -89,9 +89,14 @@ fn inertia_is_no_more_than_that_of_the_mass_at_the_furthest_point() {
     ] {
         is_accepted(&block(shape, most));
         let found = told(&block(shape, more));
-        says(&found, &["block.b.inertia", "no distribution of 2 kg over this shape", &format!("at most {most} kg m^2")]);
+        says(
+            &found,
+            &["block.b.inertia", "no distribution of 2 kg over this shape", &format!("at most {most} kg m^2")],
+        );
     }
-    let found = told("[block.b]\nmass = '1 kg'\ninertia = '1000 kg m^2'\nposition = ['0 m', '5 m']\nwidth = '1 m'\nheight = '0.5 m'\n");
+    let found = told(
+        "[block.b]\nmass = '1 kg'\ninertia = '1000 kg m^2'\nposition = ['0 m', '5 m']\nwidth = '1 m'\nheight = '0.5 m'\n",
+    );
     says(&found, &["at most 0.3125 kg m^2"]);
 }
 
@@ -125,7 +130,8 @@ fn overlapping_stones_of_an_arch_are_placed_by_their_angle() {
 #[test]
 fn a_pattern_in_place_of_one_name_is_told() {
     let free = format!("{SLAB}position = ['0 m', '1 m']\n");
-    for table in ["[force.f]\non = 'sl*'\nforce = ['1 N', '0 N']\n", "[load.f]\non = 'sl?b'\nforce = '1 N'\nat = '1 m'\n"]
+    for table in
+        ["[force.f]\non = 'sl*'\nforce = ['1 N', '0 N']\n", "[load.f]\non = 'sl?b'\nforce = '1 N'\nat = '1 m'\n"]
     {
         let found = told(&format!("{free}{table}"));
         says(&found, &["f.on", "may contain only letters", "give one name: no patterns are possible here"]);
