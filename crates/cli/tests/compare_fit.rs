@@ -655,10 +655,11 @@ fn a_flat_fall_is_aligned_by_its_height_and_wrong_units_are_guessed() {
 fn blocks_without_columns_are_read_from_rows_or_told() {
     let folder = folder("rows");
     let number = |k: u32| 0.01 * f64::from(k);
-    let measured: String = (0..20).map(|k| format!("{:?},{:?}\n", number(k), number(k * k))).collect();
+    let angle = |k: u32| 1e-3 * f64::from(k * k);
+    let measured: String = (0..20).map(|k| format!("{:?},{:?}\n", number(k), angle(k))).collect();
     std::fs::write(folder.join("measured.csv"), format!("t,phi\n{measured}")).unwrap();
     let verdict = r#"{"title": "Two", "verdict": [{"body": "a"}, {"body": "b"}]}"#;
-    let of = |k: u32, name: &str| format!("{name}0.0,0.0,{:?},0.0,0.0,{:?}", number(k * k), 2.0 * f64::from(k));
+    let of = |k: u32, name: &str| format!("{name}0.0,0.0,{:?},0.0,0.0,{:?}", angle(k), 0.2 * f64::from(k));
     let (mut rows, mut columns) = (String::new(), String::new());
     for k in 0..40 {
         let t = number(k);

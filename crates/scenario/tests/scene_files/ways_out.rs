@@ -139,3 +139,37 @@ fn a_pattern_in_place_of_one_name_is_told() {
     let found = told(&format!("{free}[force.f]\non = 'sl/b'\nforce = ['1 N', '0 N']\n"));
     assert!(!found.contains("patterns"), "{found}");
 }
+
+/// Columns are chosen among blocks, and that there are none of very many is noted with the way to them.
+#[test]
+fn columns_are_of_blocks_that_there_are() {
+    let row = |count: usize, output: &str| {
+        format!(
+            "{output}{SLAB}position = ['0 m', '1 m']\nrepeat = {{ count = {count}, shift = ['1 m', '0 m'] }}\n\
+             [contact.g]\nbetween = ['*', 'ground']\nfriction = 0.5\n"
+        )
+    };
+    let of = |names: &str| format!("[output]\nblocks = [{names}]\n");
+    for (names, wanted) in [
+        ("'slab-1', 'wall-*'", "no body matches `wall-*`"),
+        ("'slab-4'", "there is no body `slab-4`"),
+        ("'ground'", "`ground` is no block"),
+        ("'g*d'", "`g*d` is no block"),
+        ("", "must have one name or more"),
+        ("'sl ab'", "may contain only letters"),
+    ] {
+        says(&told(&row(3, &of(names))), &["output.blocks", wanted]);
+    }
+    let read = |scene: &str| load(format!("{HEAD}{scene}").as_bytes(), "scene", "scene", &[]).unwrap();
+    let columns = |scene: &str| read(scene).scene.block_tables.columns(501).collect::<Vec<_>>();
+    assert_eq!(columns(&row(501, &of("'slab-?', 'slab-2', 'slab-501'"))), [0, 1, 2, 3, 4, 5, 6, 7, 8, 500]);
+    let noted = |count: usize, output: &str| {
+        let notes = read(&row(count, output)).notes;
+        notes.iter().map(ToString::to_string).filter(|note| note.contains("blocks.csv")).collect::<String>()
+    };
+    says(
+        &noted(501, ""),
+        &["501 blocks", "trajectory.csv has no columns of them", "blocks = [\"slab-1\"] in [output]"],
+    );
+    assert_eq!((noted(500, ""), noted(501, &of("'*'"))), (String::new(), String::new()));
+}
