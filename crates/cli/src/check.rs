@@ -8,7 +8,8 @@ use crate::scene;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use teeter_scenario::output_size::{accuracy_of_seconds, has_many_contacts, step_of_pile, writing_seconds};
+use teeter_scenario::output_size::{OutputSize, accuracy_of_seconds, has_many_contacts, writing_seconds};
+use teeter_scenario::pile::PileEstimate;
 use teeter_scenario::preview::{BeamPreview, BlockPreview, FEW_DIGITS, Preview, ShapesPreview};
 use teeter_scenario::readable::{shortest, with_unit};
 use teeter_scenario::resolve::Resolved;
@@ -44,8 +45,14 @@ pub(crate) fn check(options: &Options) -> Exit {
     };
     let preview = Preview::new(&resolved, &simulation);
     let scene = &resolved.scene;
-    let measured =
-        (has_many_contacts(scene) && scene.time.accuracy.is_none()).then(|| FirstSteps::measured(&mut simulation));
+    let measured = (has_many_contacts(scene) && scene.time.accuracy.is_none()).then(|| {
+        let pile = PileEstimate::of(scene, &simulation.layout, &simulation.state.q);
+        let steps = FirstSteps::measured(&mut simulation);
+        let free = scene.blocks.iter().filter(|block| !block.motion.is_whole()).count();
+        // Most blocks touch nothing yet.
+        let pile = (steps.contacts < free).then_some(pile);
+        Measured { steps, free, pile }
+    });
     let text = format_preview(&resolved, &preview, measured.as_ref());
     let exit = print_all(&text);
     for finding in resolved.warnings.iter().chain(&resolved.foreseen).chain(&resolved.notes) {
@@ -54,7 +61,7 @@ pub(crate) fn check(options: &Options) -> Exit {
     exit
 }
 
-fn format_preview(resolved: &Resolved, preview: &Preview, measured: Option<&FirstSteps>) -> String {
+fn format_preview(resolved: &Resolved, preview: &Preview, measured: Option<&Measured>) -> String {
     let scene = &resolved.scene;
     let mut text = format!("{}\n", scene.title);
     section(&mut text, "bodies", &bodies(scene, preview));
@@ -278,8 +285,8 @@ fn model(scene: &Scene, preview: &Preview) -> Vec<String> {
     lines
 }
 
-fn run(scene: &Scene, preview: &Preview, measured: Option<&FirstSteps>) -> Vec<String> {
-    let (time, volume) = (&scene.time, preview.volume);
+fn run(scene: &Scene, preview: &Preview, measured: Option<&Measured>) -> Vec<String> {
+    let (time, tables) = (&scene.time, tables(scene, preview, measured));
     if let Some(accuracy) = time.accuracy {
         return vec![format!(
             "to {} s, with the longest steps for an accuracy of {accuracy}, by {}: the run finds them",
@@ -298,22 +305,44 @@ fn run(scene: &Scene, preview: &Preview, measured: Option<&FirstSteps>) -> Vec<S
             if time.scheme == SchemeName::default() { String::new() } else { format!(", by {}", time.scheme.word()) }
         ),
         time_of_run(scene, preview, measured),
-        format!("tables: about {} in {} rows", wording::bytes(volume.bytes), volume.rows),
+        format!("tables: about {} in {} rows", wording::bytes(tables.bytes), tables.rows),
     ];
     lines.extend(preview.memory.map(|bytes| format!("memory: about {}", wording::bytes(bytes))));
     lines
 }
 
-fn time_of_run(scene: &Scene, preview: &Preview, measured: Option<&FirstSteps>) -> String {
-    let Some(measured) = measured else {
+/// What was found out about a scene of many contacts.
+struct Measured {
+    steps: FirstSteps,
+    /// Blocks whose motion isn't prescribed.
+    free: usize,
+    /// How those that fall at first come to lie on each other.
+    pile: Option<PileEstimate>,
+}
+
+impl Measured {
+    /// Contacts at once over the run, on average.
+    fn contacts(&self, end: f64) -> usize {
+        self.steps.contacts.max(self.pile.as_ref().map_or(0, |pile| pile.contacts(end)))
+    }
+}
+
+/// The size of the tables: with the contacts that were found, if any.
+fn tables(scene: &Scene, preview: &Preview, measured: Option<&Measured>) -> OutputSize {
+    match measured.filter(|measured| measured.steps.steps > 0) {
+        Some(measured) => OutputSize::with_contacts(scene, measured.contacts(scene.time.end)),
+        None => preview.volume,
+    }
+}
+
+fn time_of_run(scene: &Scene, preview: &Preview, measured: Option<&Measured>) -> String {
+    let Some(Measured { steps: measured, free, pile }) = measured else {
         return format!(
             "time: {} (estimated from times measured on a server, accurate {})",
             wording::duration(preview.seconds),
             accuracy_of_seconds(scene)
         );
     };
-    let free = scene.blocks.iter().filter(|block| !block.motion.is_whole()).count();
-    let writing = writing_seconds(scene, measured.contacts);
     if measured.steps == 0 {
         return format!(
             "time: {} (estimated {}; the first step alone takes longer than this check measures)",
@@ -321,7 +350,9 @@ fn time_of_run(scene: &Scene, preview: &Preview, measured: Option<&FirstSteps>) 
             accuracy_of_seconds(scene)
         );
     }
-    let whole = measured.seconds() + writing;
+    let end = scene.time.end;
+    let writing = |contacts| writing_seconds(scene, contacts);
+    let whole = measured.seconds() + writing(measured.contacts);
     if measured.is_whole() {
         return format!("time: {} (measured here, without its tables, which are estimated)", wording::duration(whole));
     }
@@ -330,17 +361,21 @@ fn time_of_run(scene: &Scene, preview: &Preview, measured: Option<&FirstSteps>) 
         n => format!("{} for its first step, {} for each of the next {n}", spent(measured.first), spent(measured.each)),
     };
     let contacts = count(measured.contacts as u64, "contact");
-    if measured.contacts < free {
-        // Most blocks touch nothing yet.
-        let pile = step_of_pile(free);
-        let most = measured.seconds_with(pile) + writing;
+    if let Some(pile) = pile {
+        let of_pile = pile.seconds(end, scene.time.step);
+        let [jams, lies] = pile.steps();
+        let when = match pile.landing(end) {
+            Some(last) => format!("all from some {} on", wording::seconds(last, 1)),
+            None if pile.part_landed(end) > 0.0 => "not all before the end".to_owned(),
+            None => "none before the end".to_owned(),
+        };
         return format!(
-            "time: {} as it starts, up to some {} once all blocks lie on each other\n    \
-             (measured here: {others}, with {contacts} of {free} blocks; a pile of as many moving blocks \
-             takes some {} a step, to an order of magnitude)",
-            wording::duration(whole),
-            wording::duration(most),
-            spent(pile)
+            "time: {}, to a factor of three\n    \
+             (measured here: {others}, with {contacts} of {free} blocks; estimated: {} a step while all blocks jam, {} once they \
+             lie on each other, {when})",
+            wording::duration(measured.seconds() + of_pile + writing(pile.contacts(end))),
+            spent(jams),
+            spent(lies)
         );
     }
     format!(

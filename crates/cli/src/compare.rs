@@ -7,8 +7,8 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use teeter_report::{Reserved, Results, shortest};
 use teeter_study::compare::{
-    CompareSettings, Comparison, FILES, MotionTrace, half_cycle_csv, impact_csv, json, page, rows_csv, sentences_of,
-    svg_figures,
+    CompareSettings, Comparison, FILES, MotionTrace, TraceError, half_cycle_csv, impact_csv, json, page, rows_csv,
+    sentences_of, svg_figures,
 };
 use teeter_study::measured::Channel;
 
@@ -110,11 +110,27 @@ fn read_run(folder: &Path, block: Option<&str>) -> Result<Run, String> {
         ));
     }
     let told = |path: &Path, error: &dyn std::fmt::Display| format!("error: {}: {error}", path.display());
+    // Of very many blocks each has rows instead of columns.
+    let rows = folder.join("blocks.csv");
+    let (table, read): (_, fn(&str, Option<&str>) -> _) =
+        if rows.exists() { (rows, MotionTrace::read_rows) } else { (table, MotionTrace::read) };
     let text = std::fs::read_to_string(&table).map_err(|error| told(&table, &error))?;
-    let (block, trace) = MotionTrace::read(&text, block).map_err(|error| told(&table, &error))?;
-    let read: serde_json::Value = serde_json::from_slice(&bytes(&summary)?).map_err(|error| told(&summary, &error))?;
-    let title = read["title"].as_str().unwrap_or("a run").to_owned();
-    Ok(Run { title, block, horizon: read["horizon"].as_f64(), trace, inputs: vec![table, summary] })
+    let of_run: serde_json::Value =
+        serde_json::from_slice(&bytes(&summary)?).map_err(|error| told(&summary, &error))?;
+    let (block, trace) = read(&text, block).map_err(|error| {
+        let verdicts = of_run["verdict"].as_array().into_iter().flatten();
+        let is_known = |name: &str| verdicts.clone().any(|verdict| verdict["body"] == name);
+        match &error {
+            TraceError::Block { block, .. } if is_known(block) => {
+                let hint =
+                    format!("{error}: its scene chooses the blocks that have columns, with `blocks` in [output]");
+                told(&table, &hint)
+            }
+            error => told(&table, error),
+        }
+    })?;
+    let title = of_run["title"].as_str().unwrap_or("a run").to_owned();
+    Ok(Run { title, block, horizon: of_run["horizon"].as_f64(), trace, inputs: vec![table, summary] })
 }
 
 /// The names on the page.

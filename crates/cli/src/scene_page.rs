@@ -228,6 +228,7 @@ fn value_alone(key: &Key) -> String {
         Kind::ChoicePair(choices) => format!("two of {}", quoted(choices)),
         Kind::PatternPairs => format!("array of two names each, {such_as}"),
         Kind::Names => format!("array of names, {such_as}"),
+        Kind::Patterns => format!("array of names or patterns, {such_as}"),
         Kind::NamePair | Kind::PatternPair => format!("two names, {such_as}"),
         Kind::Downward(dimension) => format!("{}, {such_as}, or `[x, y]`", bare(dimension)),
         _ => such_as,

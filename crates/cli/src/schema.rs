@@ -197,6 +197,7 @@ fn of_kind_alone(key: &Key) -> Value {
         Kind::ChoicePair(words) => pair(json!({ "enum": words })),
         Kind::Names => json!({ "type": "array", "items": { "$ref": "#/$defs/name" }, "minItems": 1 }),
         Kind::NamePair => pair(json!({ "$ref": "#/$defs/name" })),
+        Kind::Patterns => json!({ "type": "array", "items": { "type": "string", "pattern": PATTERN }, "minItems": 1 }),
         Kind::PatternPair => pair(json!({ "type": "string", "pattern": PATTERN })),
         Kind::PatternPairs => {
             json!({ "type": "array", "items": pair(json!({ "type": "string", "pattern": PATTERN })) })

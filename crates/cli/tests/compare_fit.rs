@@ -648,3 +648,44 @@ fn a_flat_fall_is_aligned_by_its_height_and_wrong_units_are_guessed() {
     );
     assert!(told.contains("if the times are in milliseconds, say so: --unit t=ms"), "{told}");
 }
+
+/// A run of very many blocks has a row for each instead of columns, and one whose scene chooses blocks tells of the others by which key they
+/// have no columns.
+#[test]
+fn blocks_without_columns_are_read_from_rows_or_told() {
+    let folder = folder("rows");
+    let number = |k: u32| 0.01 * f64::from(k);
+    let angle = |k: u32| 1e-3 * f64::from(k * k);
+    let measured: String = (0..20).map(|k| format!("{:?},{:?}\n", number(k), angle(k))).collect();
+    std::fs::write(folder.join("measured.csv"), format!("t,phi\n{measured}")).unwrap();
+    let verdict = r#"{"title": "Two", "verdict": [{"body": "a"}, {"body": "b"}]}"#;
+    let of = |k: u32, name: &str| format!("{name}0.0,0.0,{:?},0.0,0.0,{:?}", angle(k), 0.2 * f64::from(k));
+    let (mut rows, mut columns) = (String::new(), String::new());
+    for k in 0..40 {
+        let t = number(k);
+        rows += &format!("{t:?},{}\n{t:?},{}\n", of(0, "a,"), of(k, "b,"));
+        columns += &format!("{t:?},{}\n", of(k, ""));
+    }
+    for (run, table, text) in [
+        ("many", "blocks.csv", format!("t,block,x,y,phi,vx,vy,omega\n{rows}")),
+        ("chosen", "trajectory.csv", format!("t,a.x,a.y,a.phi,a.vx,a.vy,a.omega\n{columns}")),
+    ] {
+        std::fs::create_dir_all(folder.join(run)).unwrap();
+        std::fs::write(folder.join(run).join("trajectory.csv"), "t\n0.0\n0.01\n").unwrap();
+        std::fs::write(folder.join(run).join(table), text).unwrap();
+        std::fs::write(folder.join(run).join("summary.json"), verdict).unwrap();
+    }
+    done(&folder, &["compare", "many", "measured.csv", "--block", "b"]);
+    let found = read(&folder.join("many-compare/compare.json"));
+    assert_eq!(found["block"], "b");
+    let told = |arguments: &[&str]| {
+        let output = teeter(&folder, arguments);
+        assert_eq!(output.status.code(), Some(2));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let hint = "its scene chooses the blocks that have columns, with `blocks` in [output]";
+    let missing = told(&["compare", "chosen", "measured.csv", "--block", "b"]);
+    assert!(missing.contains("no block `b`; the run has `a`") && missing.contains(hint), "{missing}");
+    let unknown = told(&["compare", "chosen", "measured.csv", "--block", "c"]);
+    assert!(unknown.contains("no block `c`") && !unknown.contains(hint), "{unknown}");
+}

@@ -2,7 +2,7 @@
 
 use crate::contacts;
 use crate::driven::Driven;
-use crate::recorder::{ENERGY_HEADER, IMPACTS_HEADER, TABLES, trajectory_header};
+use crate::recorder::{BLOCKS, BLOCKS_HEADER, ENERGY_HEADER, IMPACTS_HEADER, TABLES, trajectory_header};
 use crate::sections::{ENVELOPES_HEADER, Sections};
 use serde_json::{Map, Value};
 use teeter_scenario::scene::Scene;
@@ -58,7 +58,7 @@ pub fn unit<'n>(table: &str, column: &'n str) -> Option<&'static str> {
         |name: &'static [&'static str], of: &'n str| name.iter().find_map(|end| of.strip_suffix(end)).unwrap_or(of);
     let name = without(&["_left", "_right"], without(&["_min", "_max"], name));
     match name {
-        "state" | "beam" => Some(""),
+        "state" | "beam" | "block" => Some(""),
         name => UNITS.iter().find(|(known, _)| *known == name).map(|(_, unit)| *unit),
     }
 }
@@ -68,12 +68,14 @@ pub fn unit<'n>(table: &str, column: &'n str) -> Option<&'static str> {
 /// # Errors
 /// None today; as serialising.
 pub fn columns(scene: &Scene, layout: &Layout) -> Result<String, serde_json::Error> {
-    let trajectory = trajectory_header(layout, &Sections::new(scene, layout), &Driven::of(scene, layout));
+    let of_blocks: Vec<usize> = scene.block_tables.columns(layout.blocks.len()).collect();
+    let trajectory = trajectory_header(layout, &of_blocks, &Sections::new(scene, layout), &Driven::of(scene, layout));
     let mut tables = Map::new();
-    let headers = [trajectory.as_str(), contacts::HEADER, IMPACTS_HEADER, ENERGY_HEADER];
+    let headers = [trajectory.as_str(), contacts::HEADER, IMPACTS_HEADER, ENERGY_HEADER, BLOCKS_HEADER];
+    let written = |(table, _): &(&str, &str)| *table != BLOCKS || scene.block_tables.has_rows();
     let has_envelopes = scene.beams.iter().any(|beam| beam.output.envelope);
     let more = has_envelopes.then_some(("envelopes.csv", ENVELOPES_HEADER));
-    for (table, header) in TABLES.into_iter().zip(headers).chain(more) {
+    for (table, header) in TABLES.into_iter().zip(headers).filter(written).chain(more) {
         let columns = header.trim_end().split(',').map(|column| {
             let unit = unit(table, column).unwrap_or_default();
             Value::Array(vec![column.into(), unit.into()])
@@ -91,7 +93,7 @@ mod tests {
     fn every_column_has_its_unit() {
         for (table, header) in TABLES[1..]
             .iter()
-            .zip([contacts::HEADER, IMPACTS_HEADER, ENERGY_HEADER])
+            .zip([contacts::HEADER, IMPACTS_HEADER, ENERGY_HEADER, BLOCKS_HEADER])
             .chain([(&"envelopes.csv", ENVELOPES_HEADER)])
         {
             for column in header.trim_end().split(',') {

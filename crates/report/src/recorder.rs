@@ -84,9 +84,14 @@ impl Record {
 }
 
 /// The tables, in the order in which a checkpoint has their lengths.
-pub(crate) const TABLES: [&str; 4] = ["trajectory.csv", "contacts.csv", "impacts.csv", "energy.csv"];
+pub(crate) const TABLES: [&str; 5] = ["trajectory.csv", "contacts.csv", "impacts.csv", "energy.csv", BLOCKS];
+
+/// The table that scenes of very many blocks have instead of columns of theirs.
+pub(crate) const BLOCKS: &str = "blocks.csv";
 
 pub(crate) const IMPACTS_HEADER: &str = "t,contact,a,b,point,impulse_n,impulse_t,u_n_before,u_n_after\n";
+
+pub(crate) const BLOCKS_HEADER: &str = "t,block,x,y,phi,vx,vy,omega\n";
 
 pub(crate) const ENERGY_HEADER: &str =
     "t,kinetic,elastic,gravity,external,contact,friction,viscous,numerical,projection,residual\n";
@@ -121,6 +126,9 @@ pub struct Recorder<'a> {
     contacts: Table,
     impacts: Table,
     energy: Table,
+    blocks: Table,
+    /// The blocks that have columns in the trajectory, by their numbers.
+    columns: Vec<usize>,
     sections: Sections,
     driven: Vec<Driven>,
     bodies: Bodies,
@@ -155,7 +163,12 @@ impl<'a> Recorder<'a> {
         layout: &'a Layout,
         tell: &'a mut dyn FnMut(&str),
     ) -> Result<Self, ResultsError> {
-        Self::fresh(|k, header| results.table(TABLES[k], &header()), scene, layout, tell)
+        let columns = scene.block_tables.columns(layout.blocks.len()).collect();
+        let table = |k, header: &dyn Fn() -> String| match TABLES[k] {
+            BLOCKS if !scene.block_tables.has_rows() => Ok(Table::nowhere()),
+            name => results.table(name, &header()),
+        };
+        Self::fresh(table, columns, scene, layout, tell)
     }
 
     /// A recorder of a run of `scene` that writes no tables: for what a run shows and warns of.
@@ -163,24 +176,24 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// None today; as [`Recorder::new`].
     pub fn watching(scene: &Scene, layout: &'a Layout, tell: &'a mut dyn FnMut(&str)) -> Result<Self, ResultsError> {
-        Self::fresh(|_, _| Ok(Table::nowhere()), scene, layout, tell)
+        Self::fresh(|_, _| Ok(Table::nowhere()), Vec::new(), scene, layout, tell)
     }
 
     /// A recorder of a run of `scene` that keeps the rows of its trajectory in memory, for
-    /// [`Self::trajectory`], and writes no tables.
+    /// [`Self::trajectory`], with columns of all blocks whatever the scene chooses, and writes no tables.
     ///
     /// # Errors
     /// None today; as [`Recorder::new`].
     pub fn in_memory(scene: &Scene, layout: &'a Layout, tell: &'a mut dyn FnMut(&str)) -> Result<Self, ResultsError> {
         let table = |k, _: &dyn Fn() -> String| Ok(if k == 0 { Table::in_memory() } else { Table::nowhere() });
-        Self::fresh(table, scene, layout, tell)
+        Self::fresh(table, (0..layout.blocks.len()).collect(), scene, layout, tell)
     }
 
     /// The header of the trajectory table and its rows so far, as `trajectory.csv` would hold them,
     /// of a recorder made by [`Self::in_memory`].
     #[must_use]
     pub fn trajectory(&self) -> (String, &str) {
-        let header = trajectory_header(self.layout, &self.sections, &self.driven);
+        let header = trajectory_header(self.layout, &self.columns, &self.sections, &self.driven);
         (header, std::str::from_utf8(self.trajectory.kept()).unwrap_or_default())
     }
 
@@ -194,6 +207,7 @@ impl<'a> Recorder<'a> {
 
     fn fresh(
         table: impl Fn(usize, &dyn Fn() -> String) -> Result<Table, ResultsError>,
+        columns: Vec<usize>,
         scene: &Scene,
         layout: &'a Layout,
         tell: &'a mut dyn FnMut(&str),
@@ -202,8 +216,8 @@ impl<'a> Recorder<'a> {
         let (beams, section_values) = sections.empty(scene, layout);
         // Only of tables that are written.
         let header = |k: usize| match k {
-            0 => trajectory_header(layout, &Sections::new(scene, layout), &Driven::of(scene, layout)),
-            _ => [contacts::HEADER, IMPACTS_HEADER, ENERGY_HEADER][k - 1].to_owned(),
+            0 => trajectory_header(layout, &columns, &Sections::new(scene, layout), &Driven::of(scene, layout)),
+            _ => [contacts::HEADER, IMPACTS_HEADER, ENERGY_HEADER, BLOCKS_HEADER][k - 1].to_owned(),
         };
         let kept = Kept {
             schedule: Schedule::new(scene.every, scene.time.steps(), scene.time.step),
@@ -219,7 +233,7 @@ impl<'a> Recorder<'a> {
             travelled: 0.0,
             record: Record { beams, ..Record::default() },
         };
-        Self::with(|k| table(k, &|| header(k)), kept, sections, scene, layout, tell)
+        Self::with(|k| table(k, &|| header(k)), columns.clone(), kept, sections, scene, layout, tell)
     }
 
     /// Opens the tables of a run of `scene` again where a checkpoint left them; what was written past that goes.
@@ -231,11 +245,17 @@ impl<'a> Recorder<'a> {
         tell: &'a mut dyn FnMut(&str),
     ) -> Result<Self, ResultsError> {
         let sections = Sections::new(scene, layout);
-        Self::with(|k| results.reopened_table(TABLES[k], lengths[k]), kept, sections, scene, layout, tell)
+        let columns = scene.block_tables.columns(layout.blocks.len()).collect();
+        let table = |k: usize| match TABLES[k] {
+            BLOCKS if !scene.block_tables.has_rows() => Ok(Table::nowhere()),
+            name => results.reopened_table(name, lengths[k]),
+        };
+        Self::with(table, columns, kept, sections, scene, layout, tell)
     }
 
     fn with(
         table: impl Fn(usize) -> Result<Table, ResultsError>,
+        columns: Vec<usize>,
         kept: Kept,
         sections: Sections,
         scene: &Scene,
@@ -249,6 +269,8 @@ impl<'a> Recorder<'a> {
             contacts: table(1)?,
             impacts: table(2)?,
             energy: table(3)?,
+            blocks: table(4)?,
+            columns,
             sections,
             driven: Driven::of(scene, layout),
             bodies: Bodies::of(scene),
@@ -267,7 +289,8 @@ impl<'a> Recorder<'a> {
     /// What a checkpoint keeps: all rows are on disk then, in tables of these lengths.
     pub(crate) fn keep(&mut self) -> Result<(&Kept, [u64; TABLES.len()]), ResultsError> {
         self.flush()?;
-        let lengths = [&self.trajectory, &self.contacts, &self.impacts, &self.energy].map(Table::written);
+        let tables = [&self.trajectory, &self.contacts, &self.impacts, &self.energy, &self.blocks];
+        let lengths = tables.map(Table::written);
         Ok((&self.kept, lengths))
     }
 
@@ -281,7 +304,7 @@ impl<'a> Recorder<'a> {
 
     /// Brings all rows to disk.
     fn flush(&mut self) -> Result<(), ResultsError> {
-        [&mut self.trajectory, &mut self.contacts, &mut self.impacts, &mut self.energy]
+        [&mut self.trajectory, &mut self.contacts, &mut self.impacts, &mut self.energy, &mut self.blocks]
             .into_iter()
             .try_for_each(Table::flush)
     }
@@ -307,13 +330,16 @@ impl<'a> Recorder<'a> {
         if self.trajectory.takes_rows() {
             self.write_trajectory_row(state)?;
         }
+        if self.blocks.takes_rows() {
+            self.write_block_rows(state)?;
+        }
         if self.energy.takes_rows() { self.write_energy_row(state) } else { Ok(()) }
     }
 
     fn write_trajectory_row(&mut self, state: &State) -> Result<(), ResultsError> {
         self.line.clear();
         push(&mut self.line, state.t);
-        for block in &self.layout.blocks {
+        for block in self.columns.iter().map(|&block| &self.layout.blocks[block]) {
             for x in state.q[block.range.clone()].iter().chain(&state.v[block.range.clone()]) {
                 push_next(&mut self.line, *x);
             }
@@ -331,6 +357,22 @@ impl<'a> Recorder<'a> {
         }
         self.line.push('\n');
         self.trajectory.rows(&self.line)
+    }
+
+    /// A row for each block.
+    fn write_block_rows(&mut self, state: &State) -> Result<(), ResultsError> {
+        for block in &self.layout.blocks {
+            self.line.clear();
+            push(&mut self.line, state.t);
+            self.line.push(',');
+            self.line.push_str(&block.name);
+            for x in state.q[block.range.clone()].iter().chain(&state.v[block.range.clone()]) {
+                push_next(&mut self.line, *x);
+            }
+            self.line.push('\n');
+            self.blocks.rows(&self.line)?;
+        }
+        Ok(())
     }
 
     fn write_energy_row(&mut self, state: &State) -> Result<(), ResultsError> {
@@ -487,9 +529,10 @@ impl Observer<2> for Recorder<'_> {
     }
 }
 
-pub(crate) fn trajectory_header(layout: &Layout, sections: &Sections, driven: &[Driven]) -> String {
+/// The header of the trajectory, with columns of these blocks.
+pub(crate) fn trajectory_header(layout: &Layout, blocks: &[usize], sections: &Sections, driven: &[Driven]) -> String {
     let mut header = String::from("t");
-    for block in &layout.blocks {
+    for block in blocks.iter().map(|&block| &layout.blocks[block]) {
         for column in ["x", "y", "phi", "vx", "vy", "omega"] {
             header.push_str(&format!(",{}.{column}", block.name));
         }

@@ -10,10 +10,11 @@ use std::path::{Path, PathBuf};
 
 /// The files that a run may write; which of the figures, depends on its scene. They are removed in this order: no summary
 /// outlives a table, and while there is anything, `scene.toml` says of what.
-pub const FILES: [&str; 39] = [
+pub const FILES: [&str; 40] = [
     CHECKPOINT,
     "summary.json",
     "trajectory.csv",
+    "blocks.csv",
     "contacts.csv",
     "impacts.csv",
     "energy.csv",

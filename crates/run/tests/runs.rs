@@ -324,3 +324,92 @@ fn the_horizon_is_found_on_demand() {
     assert!(told.text.contains("the motion is that sensitive there"), "{}", told.text);
     assert_eq!(told.first_t, Some(horizon));
 }
+
+/// A block that falls beside so many that stay.
+fn falling_beside(fixed: usize) -> RunJob {
+    let scene = format!(
+        "[time]\nend = '0.3 s'\nstep = '1 ms'\n[output]\nevery = '50 ms'\n[ground]\n\
+         [block.post]\ndensity = '2000 kg/m^3'\nwidth = '10 cm'\nheight = '10 cm'\ndepth = '10 cm'\nposition = ['1 m', '5 cm']\n\
+         fixed = true\nrepeat = {{ count = {fixed}, shift = ['20 cm', '0 cm'] }}\n\
+         [block.stone]\ndensity = '2000 kg/m^3'\nwidth = '10 cm'\nheight = '10 cm'\ndepth = '10 cm'\nposition = ['0 m', '15 cm']\n\
+         [contact.floor]\nbetween = ['stone', 'ground']\nfriction = 0.5\n"
+    );
+    RunJob::new(SceneSource::bytes(scene, "<memory>", "falling")).without_report()
+}
+
+/// The names of the columns of a table, and its rows.
+fn table(text: &str) -> (Vec<&str>, Vec<Vec<&str>>) {
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    (lines.next().unwrap(), lines.collect())
+}
+
+/// 30 000 columns are of no use to anyone: beyond 500 blocks each has a row at each time, with the numbers of the columns that
+/// can be asked for.
+#[test]
+fn very_many_blocks_have_rows_instead_of_columns() {
+    let place = Place::new("rows");
+    let run = |name: &str, job: RunJob| {
+        let done = job.folder(place.at(name)).prepare().unwrap().run(Hooks::new()).unwrap();
+        assert_eq!(done.ended(), EndedWord::Complete);
+        results(&done.folder)
+    };
+    let text = |files: &BTreeMap<PathBuf, String>, name: &str| files.get(Path::new(name)).cloned();
+    let (few, many) = (run("few", falling_beside(499)), run("many", falling_beside(500)));
+    assert_eq!((text(&few, "blocks.csv"), table(&text(&few, "trajectory.csv").unwrap()).0.len()), (None, 1 + 6 * 500));
+    let trajectory = text(&many, "trajectory.csv").unwrap();
+    assert_eq!(table(&trajectory).0, ["t"]);
+    let all = run("all", falling_beside(500).set("output.blocks", "[\"*\"]"));
+    assert_eq!(text(&all, "blocks.csv"), None);
+    let (rows, columns) = (text(&many, "blocks.csv").unwrap(), text(&all, "trajectory.csv").unwrap());
+    let ((heading, rows), (_, columns)) = (table(&rows), table(&columns));
+    assert_eq!(heading, ["t", "block", "x", "y", "phi", "vx", "vy", "omega"]);
+    assert_eq!((rows.len(), columns.len()), (501 * 7, 7));
+    for (at, row) in rows.iter().enumerate() {
+        let (time, block) = (&columns[at / 501], at % 501);
+        let name = if block == 500 { "stone".to_owned() } else { format!("post-{}", block + 1) };
+        assert_eq!((row[0], row[1]), (time[0], name.as_str()));
+        assert_eq!(row[2..], time[1 + 6 * block..7 + 6 * block]);
+    }
+    // The units of these columns, too, and only of tables that there are.
+    let units = |files| serde_json::from_str::<serde_json::Value>(&text(files, "columns.json").unwrap()).unwrap();
+    assert_eq!(units(&many)["blocks.csv"][1], serde_json::json!(["block", ""]));
+    assert_eq!(units(&many)["trajectory.csv"], serde_json::json!([["t", "s"]]));
+    assert!(units(&all)["blocks.csv"].is_null());
+    let written = text(&many, "scene.toml").unwrap();
+    assert!(!written.contains("blocks = "), "{written}");
+}
+
+#[test]
+fn blocks_that_the_scene_names_have_columns_and_others_are_in_no_table() {
+    let place = Place::new("chosen");
+    for fixed in [3, 501] {
+        let job =
+            falling_beside(fixed).set("output.blocks", "[\"post-2\", \"s*\"]").folder(place.at(&fixed.to_string()));
+        let files = results(&job.prepare().unwrap().run(Hooks::new()).unwrap().folder);
+        let (heading, rows) = table(&files[Path::new("trajectory.csv")]);
+        let wanted = ["post-2", "stone"]
+            .iter()
+            .flat_map(|block| ["x", "y", "phi", "vx", "vy", "omega"].map(|of| format!("{block}.{of}")));
+        assert_eq!(heading, ["t".to_owned()].into_iter().chain(wanted).collect::<Vec<_>>());
+        assert_eq!((rows.len(), rows[0][1], rows[0][8]), (7, "1.2", "0.15"));
+        assert!(!files.contains_key(Path::new("blocks.csv")));
+        assert!(files[Path::new("scene.toml")].contains("blocks = [\"post-2\", \"s*\"]"));
+    }
+}
+
+#[test]
+fn a_run_of_very_many_blocks_goes_on_to_the_same_bytes() {
+    let place = Place::new("many");
+    let job = || falling_beside(500).checkpoint_every(10.0).existing(ExistingResults::Resume);
+    let alone = job().folder(place.at("alone")).prepare().unwrap().run(Hooks::new()).unwrap();
+    let cancel = Arc::new(AtomicBool::new(false));
+    let stop = |progress: Progress| cancel.store(progress.step >= PROGRESS_STEPS, Ordering::Relaxed);
+    let hooks = Hooks::new().cancelled_by(&cancel).on_progress(stop);
+    let part = job().folder(place.at("parts")).prepare().unwrap().run(hooks).unwrap();
+    assert_eq!(part.ended(), EndedWord::Interrupted);
+    let prepared = job().folder(place.at("parts")).prepare().unwrap();
+    assert!(matches!(prepared.start(), RunStart::Checkpoint { .. }), "{:?}", prepared.start());
+    prepared.run(Hooks::new()).unwrap();
+    assert!(results(&place.at("parts")) == results(&alone.folder));
+    assert!(place.at("parts/blocks.csv").exists());
+}

@@ -73,7 +73,7 @@ impl BuildError {
                 "move the block, or the point",
             ),
             Self::Overlap { first, second, depth } => document.error(
-                &place_of(second, document),
+                &place_beside(first, second, document),
                 format!("`{second}` overlaps `{first}` by {} at the start", with_digits(*depth, "m", 2)),
                 "move one of the two",
             ),
@@ -86,10 +86,23 @@ impl BuildError {
     }
 }
 
-/// The key that gives the position of a block.
+/// The key that gives the position of a block: of one that starts where it is drawn, its shape.
 fn place_of(block: &str, document: &Document) -> String {
-    let key = if document.has(&format!("block.{}.position", table_of(document, block))) { "position" } else { "at" };
-    format!("block.{}.{key}", table_of(document, block))
+    let path = |key: &str| format!("block.{}.{key}", table_of(document, block));
+    let keys = ["position", "at", "centre", "points", "parts"];
+    let key = keys.into_iter().find(|key| document.has(&path(key)));
+    let drawn = if document.has(&path("shape.kind")) { "shape.kind" } else { "at" };
+    path(key.unwrap_or(drawn))
+}
+
+/// The key that gives the position of the second block beside the first one: of voussoirs of one table the angle from one to the next.
+fn place_beside(first: &str, second: &str, document: &Document) -> String {
+    let table = table_of(document, second);
+    if table_of(document, first) != table || document.text(&format!("block.{table}.shape.kind")) != Some("voussoir") {
+        return place_of(second, document);
+    }
+    let turn = format!("block.{table}.repeat.turn");
+    if document.has(&turn) { turn } else { format!("block.{table}.repeat") }
 }
 
 pub(crate) fn beam(name: &str, error: &BeamError, document: &Document) -> Diagnostic {

@@ -25,12 +25,14 @@ mod supports;
 mod timing;
 
 use names::BlockName;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
 use crate::document::{Document, SettingsRead};
-use crate::scene::{AngleUnit, ContactScene, Display, LengthUnit, Scene, SolverScene, SupportingBody, Time, most_used};
+use crate::scene::{
+    AngleUnit, BlockTables, ContactScene, Display, LengthUnit, Scene, SolverScene, SupportingBody, Time, most_used,
+};
 use crate::scene_checks;
 use crate::value::Value;
 use crate::words::Word;
@@ -109,6 +111,7 @@ pub fn resolve(mut document: Document, stem: &str, read: &mut ReadFile<'_>) -> R
                 warnings.extend(findings.warnings);
                 let (foreseen, mut notes) = (findings.foreseen, findings.notes);
                 notes.extend(fewer_rows(&scene, &document));
+                notes.extend(blocks_in_rows(&scene, &document));
                 return Ok(Resolved { scene, document, warnings, foreseen, notes, files });
             }
         }
@@ -359,6 +362,7 @@ impl<'a, 'f> Resolver<'a, 'f> {
         let solver = self.solver();
         let thinned = |time: &Time| output_size::thinned(self.block_names.len(), time.steps(), time.step);
         let every = doc.quantity("output.every").or_else(|| time.as_ref().and_then(thinned));
+        let block_tables = self.block_tables();
         let mut scene = Scene {
             title,
             time: time?,
@@ -373,11 +377,34 @@ impl<'a, 'f> Resolver<'a, 'f> {
             loads: loads.into_iter().collect::<Option<_>>()?,
             solver: solver?,
             every,
+            block_tables,
             display: self.display(),
         };
         self.faces(&mut scene);
         self.output(&scene);
         Some(scene)
+    }
+
+    /// In which tables the motions of blocks are.
+    fn block_tables(&mut self) -> BlockTables {
+        const KEY: &str = "output.blocks";
+        let doc = self.doc;
+        let Some(patterns) = doc.words(KEY) else { return BlockTables::of(self.block_names.len()) };
+        let mut chosen = BTreeSet::new();
+        for pattern in patterns {
+            let Some(found) = self.bodies_matching(KEY, pattern) else { continue };
+            let blocks = found.iter().filter_map(|(_, body)| match body {
+                SupportingBody::Block(block) => Some(*block),
+                SupportingBody::Beam(_) | SupportingBody::Ground => None,
+            });
+            let blocks: Vec<usize> = blocks.collect();
+            if blocks.is_empty() {
+                let rule = format!("`{pattern}` is no block");
+                self.error(KEY, rule, "name blocks: what beams have in tables is told by their own keys");
+            }
+            chosen.extend(blocks);
+        }
+        BlockTables::Chosen(chosen.into_iter().collect())
     }
 
     /// How the run is shown: in the units that the scene itself uses most, unless it names others.
@@ -543,6 +570,21 @@ fn fewer_rows(scene: &Scene, document: &Document) -> Option<Diagnostic> {
         quantity::format(scene.time.step, Dimension::TIME)
     );
     Some(document.error("output.every", rule, remedy).as_note())
+}
+
+/// Tells that the motions of so many blocks are in rows.
+fn blocks_in_rows(scene: &Scene, document: &Document) -> Option<Diagnostic> {
+    if !scene.block_tables.has_rows() {
+        return None;
+    }
+    let rule = format!(
+        "{} blocks, so that blocks.csv has a row for each of them at each time, and trajectory.csv has no columns of them",
+        scene.blocks.len()
+    );
+    let name = &scene.blocks.first()?.name;
+    let remedy =
+        format!("give blocks = [\"{name}\"] in [output], such names or patterns, for columns of these and no rows");
+    Some(document.error("output.blocks", rule, remedy).as_note())
 }
 
 /// Names in a message, only the first ones if there are many.

@@ -1,12 +1,14 @@
 //! A resolved scene: plain SI numbers, checked references, all defaults filled in.
 
 mod beam_output;
+mod block_tables;
 mod crowd;
 mod display;
 mod history;
 mod reduction;
 
 pub use beam_output::{BEAM_QUANTITIES, BeamOutput, BeamQuantity};
+pub use block_tables::BlockTables;
 pub(crate) use crowd::pairs_between;
 pub use crowd::{Crowd, CrowdContact};
 pub(crate) use display::most_used;
@@ -51,6 +53,8 @@ pub struct Scene {
     pub solver: SolverScene,
     /// Time between rows, s; `None`: thinned to some 10 000 rows.
     pub every: Option<f64>,
+    /// In which tables the motions of blocks are.
+    pub block_tables: BlockTables,
     /// How the page and the figures show it.
     pub display: Display,
 }

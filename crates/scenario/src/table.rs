@@ -333,7 +333,7 @@ pub static TABLES: &[TableSchema] = &[
             ROUNDING, CHAMFER,
             key("depth", SIZE, RequiredWithout("mass"), "\"3 cm\"", "Depth out of the plane."),
             key("mass", Kind::Quantity(Dimension::MASS, Range::POSITIVE), Optional, "\"2 kg\"", "Mass, instead of material and depth; together with inertia."),
-            key("inertia", Kind::Quantity(Dimension::INERTIA, Range::POSITIVE.sizes(1e-18, 1e12)), Optional, "\"3e-4 kg m^2\"", "Moment of inertia about the mass centre, which is that of the shape; together with mass."),
+            key("inertia", Kind::Quantity(Dimension::INERTIA, Range::POSITIVE.sizes(1e-18, 1e12)), Optional, "\"3e-4 kg m^2\"", "Moment of inertia about the mass centre, which is that of the shape; together with mass. It is refused if it is more than that of all the mass at the furthest point of the shape."),
             key("on", Kind::Name, Optional, "\"table\"", "The body that it stands on: a beam, \"ground\", or another block, on whose upper side it is placed."),
             key("at", Kind::Quantity(Dimension::LENGTH, Range::ANY), Optional, "\"18 cm\"", "Position x, in the world, of the midpoint of its base before it is tilted; the base is its lowest side, or lowest point."),
             key("tilt", Kind::Quantity(Dimension::ANGLE, QUARTER_TURN), DefaultWith { sibling: "on", value: "\"0 deg\"" }, "\"5 deg\"", "Rotation about the end of its base on which it then stands, counter-clockwise positive; it is placed such that its lowest point touches."),
@@ -469,6 +469,7 @@ pub static TABLES: &[TableSchema] = &[
         doc: "Output of results.",
         keys: &[
             key("every", TIME, Optional, "\"1 ms\"", "Time between rows; if left out, every step up to 10 000 rows, evenly thinned beyond; with more than 300 blocks up to 200 000 rows divided by their number, but at least 100."),
+            key("blocks", Kind::Patterns, Optional, "[\"stone-1*\", \"capstone\"]", "The blocks that have columns in trajectory.csv, by names or patterns; the page shows all of them. If left out, all of up to 500 blocks have columns; of more blocks none has, and blocks.csv has a row for each of them at each time."),
             key("figure_width", Kind::Quantity(Dimension::LENGTH, FIGURE_WIDTH), Default("\"120 mm\""), "\"84 mm\"", "Width of the figures: 84 mm and 174 mm are one and two columns of most journals. Their type is 7 to 8 pt at any width."),
             key("length_unit", Kind::Choice(&["mm", "cm", "m"]), Optional, "\"mm\"", "Unit of lengths on the axes of page and figures; if left out, the one that the scene uses most. What is too small to be read in it has a smaller one. Tables are in SI units."),
             key("angle_unit", Kind::Choice(&["deg", "mrad", "rad"]), Optional, "\"rad\"", "Unit of angles on the axes of page and figures; if left out, the one that the scene uses most, deg if none."),

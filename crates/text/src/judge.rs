@@ -119,8 +119,11 @@ impl Judge<'_> {
                 };
                 self.pair_of(key, path, node, read).map(Value::TextPair)
             }
-            Kind::Names => {
-                let read = |judge: &mut Self, item: &Node| judge.name(key, path, item);
+            Kind::Names | Kind::Patterns => {
+                let read = |judge: &mut Self, item: &Node| match key.kind {
+                    Kind::Names => judge.name(key, path, item),
+                    _ => judge.pattern(key, path, item),
+                };
                 let names = self.list_of(key, path, node, read)?;
                 if names.is_empty() {
                     self.blame(node, path, "must have one name or more").remedy = Some(expected(key));
@@ -293,7 +296,10 @@ impl Judge<'_> {
         let text = self.text(key, path, node)?;
         match name_rule(&text) {
             Some(rule) => {
-                self.blame(node, path, rule);
+                let found = self.blame(node, path, rule);
+                if text.contains(['*', '?']) {
+                    found.remedy = Some("give one name: no patterns are possible here".to_owned());
+                }
                 None
             }
             None => Some(text),

@@ -168,6 +168,8 @@ pub enum Kind {
     PatternPair,
     /// An array of such arrays.
     PatternPairs,
+    /// An array of one or more names, in which a `*` stands for any characters and a `?` for one.
+    Patterns,
     /// A quantity in one of several units, which determines its meaning.
     Measure(&'static [crate::measure::AllowedUnit], Range),
     /// A vector: an array of two quantities x, y, or one quantity that is not negative, for a

@@ -140,7 +140,7 @@ impl Value {
             Self::List(_) => matches!(kind, Kind::List(..) | Kind::Numbers(_)),
             Self::TextPair(_) => matches!(kind, Kind::ChoicePair(_) | Kind::NamePair | Kind::PatternPair),
             Self::TextPairs(_) => kind == Kind::PatternPairs,
-            Self::Words(_) => matches!(kind, Kind::Words(_) | Kind::Names),
+            Self::Words(_) => matches!(kind, Kind::Words(_) | Kind::Names | Kind::Patterns),
             Self::Measure(_) => matches!(kind, Kind::Measure(..)),
             Self::Item(_) => matches!(kind, Kind::WordOrTable(..)),
             Self::ItemPair(_) => matches!(kind, Kind::WordOrTablePair(..)),

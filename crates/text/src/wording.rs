@@ -52,7 +52,7 @@ pub(crate) fn noun(key: &Key) -> String {
             format!("an array, each item {} with its unit,", dimension.name())
         }
         Kind::Numbers(_) => "an array of bare numbers".to_owned(),
-        Kind::Words(_) | Kind::Names => "an array of words in quotes".to_owned(),
+        Kind::Words(_) | Kind::Names | Kind::Patterns => "an array of words in quotes".to_owned(),
         Kind::WordOrTable([], _) => "a table".to_owned(),
         Kind::Tables(_) => "an array of tables".to_owned(),
         Kind::WordOrTable(..) => "a word in quotes or a table".to_owned(),

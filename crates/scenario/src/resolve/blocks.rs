@@ -11,7 +11,7 @@ use super::Resolver;
 use super::contacts::Joined;
 use super::jitter;
 use super::names::BlockName;
-use super::outlines::{self, Drawn, Refusal, ShapeKeys, Way};
+use super::outlines::{self, Drawn, Refusal, ShapeKeys, Way, few_digits};
 use crate::scene::{
     AxisScene, BeamScene, BlockPart, BlockScene, ContactScene, History, Matter, MotionScene, Placement, SignalScene,
     SupportingBody, mass_of,
@@ -247,9 +247,7 @@ impl Resolver<'_, '_> {
         let support = self.supporting_body(&at("on"), name, on).ok()?;
         let contact = joined.get(&(self.blocks.get(name).copied()?, support)).copied();
         if contact.is_none() && contacts.iter().all(Option::is_some) && !doc.is_refused("contact") {
-            let rule = format!("the block stands on `{on}`, but there is no contact between the two");
-            let remedy = format!("add [contact.NAME] with between = [\"{name}\", \"{on}\"]");
-            self.error(&at("on"), rule, remedy);
+            self.stands_without_contact(&at("on"), [name, on], support);
         }
         // A stacked block lies flat on the one before.
         let stacked = block.stands_on.is_some();
@@ -314,6 +312,9 @@ impl Resolver<'_, '_> {
                 return None;
             }
         };
+        if let Some(given) = given {
+            self.check_inertia(&path, given, &drawn, centre)?;
+        }
         let matter = match (given, drawn.as_slice()) {
             (Some(given), _) => Matter::Given(given),
             (None, [(_, density)]) => Matter::Homogeneous { density: (*density)?, depth: depth? },
@@ -454,6 +455,35 @@ impl Resolver<'_, '_> {
             .map_err(|why| self.error(&at("mass"), why.to_string(), "give a positive mass and inertia"))
             .ok()
             .map(Some)
+    }
+
+    /// Refuses a moment of inertia that is larger than with all of the mass at the shape's furthest point from the mass centre.
+    fn check_inertia(
+        &mut self,
+        path: &str,
+        given: MassProperties,
+        drawn: &[(Drawn, Option<f64>)],
+        centre: Vector2<f64>,
+    ) -> Option<()> {
+        /// Relative: the limit may be given with the six digits that the message has.
+        const ROUNDING: f64 = 1e-5;
+        let reach = |(part, _): &(Drawn, Option<f64>)| {
+            let furthest = part.shape.core().iter().map(|corner| (corner - centre).norm()).fold(0.0, f64::max);
+            furthest + part.shape.radius()
+        };
+        let reach = drawn.iter().map(reach).fold(0.0, f64::max);
+        let most = given.mass * reach * reach;
+        if given.inertia <= most * (1.0 + ROUNDING) {
+            return Some(());
+        }
+        let rule = format!(
+            "no distribution of {} kg over this shape has so much: its furthest point is {} m from the mass centre",
+            few_digits(given.mass),
+            few_digits(reach)
+        );
+        let remedy = format!("give at most {} kg m^2 about the mass centre, or a larger shape", few_digits(most));
+        self.error(&format!("{path}.inertia"), rule, remedy);
+        None
     }
 
     /// Reports blocks that stand on each other in a cycle.

@@ -125,6 +125,33 @@ impl Resolver<'_, '_> {
         }
     }
 
+    /// Reports, at `path`, a block that stands on a body without a contact between the two: by which key they have none, so that no
+    /// contact is advised that would be refused.
+    pub(super) fn stands_without_contact(&mut self, path: &str, [name, on]: [&str; 2], support: SupportingBody) {
+        let block = self.blocks.get(name).copied().map(SupportingBody::Block);
+        if block.is_some_and(|block| self.is_fixed(block)) && self.is_fixed(support) {
+            let both = if on == "ground" { "a fixed block and the ground" } else { "two fixed blocks" };
+            let rule = format!("{both} have no contact, so that `{name}` can't be placed on `{on}`");
+            self.error(path, rule, "give position (and angle) instead of on, at and tilt");
+            return;
+        }
+        let is_apart = |[a, b]: &[String; 2]| {
+            let of = |a: &str, b: &str| names::matches_pattern(a, name) && names::matches_pattern(b, on);
+            of(a, b) || of(b, a)
+        };
+        if self.doc.text_pairs("world.apart").is_some_and(|pairs| pairs.iter().any(is_apart)) {
+            let rule = format!("the block stands on `{on}`, but world.apart says that the two don't touch");
+            self.error(
+                path,
+                rule,
+                "leave that pair out of apart, or give position (and angle) instead of on, at and tilt",
+            );
+            return;
+        }
+        let rule = format!("the block stands on `{on}`, but there is no contact between the two");
+        self.error(path, rule, format!("add [contact.NAME] with between = [\"{name}\", \"{on}\"]"));
+    }
+
     /// Enters a contact; two contacts of one pair are an error.
     fn join(&mut self, contact: &ContactScene, number: usize, others: &[Option<ContactScene>], joined: &mut Joined) {
         let first = *joined.entry((contact.block, contact.surface)).or_insert(number);

@@ -3,8 +3,8 @@
 
 use super::Resolver;
 use crate::scene::{
-    AxisScene, BeamScene, BlockScene, ContactScene, ForceScene, History, LoadKind, LoadScene, MotionScene, SignalScene,
-    SupportingBody,
+    AxisScene, BeamScene, BlockScene, ContactScene, ForceScene, History, LoadKind, LoadScene, MotionScene, Placement,
+    SignalScene, SupportingBody,
 };
 use std::fmt::Write;
 use teeter_integrator::{Formula, Given};
@@ -206,7 +206,8 @@ impl Resolver<'_, '_> {
     /// Reports contacts between two bodies that are both fully prescribed.
     pub(super) fn check_contacts_can_move(&mut self, blocks: &[Option<BlockScene>], contacts: &[Option<ContactScene>]) {
         let is_prescribed = |block: &BlockScene| block.motion.is_whole();
-        for contact in contacts.iter().flatten() {
+        let listed = contacts.iter().enumerate().filter_map(|(number, contact)| Some((number, contact.as_ref()?)));
+        for (number, contact) in listed {
             let Some(Some(block)) = blocks.get(contact.block) else { continue };
             let other = match contact.surface {
                 SupportingBody::Ground => "the ground".to_owned(),
@@ -218,7 +219,15 @@ impl Resolver<'_, '_> {
             };
             if is_prescribed(block) {
                 let rule = format!("`{}` is fully prescribed, and {other} can't yield to it", block.name);
-                let remedy = "leave a direction or the angle free, or leave the contact out";
+                let placed_by_it = [Some(block), contact.other_block().and_then(|other| blocks.get(other)?.as_ref())]
+                    .into_iter()
+                    .flatten()
+                    .any(|block| matches!(block.placement, Placement::On { contact, .. } if contact == number));
+                let remedy = if placed_by_it {
+                    "leave a direction or the angle free, or leave the contact out and give position instead of on, at and tilt"
+                } else {
+                    "leave a direction or the angle free, or leave the contact out"
+                };
                 self.error(&format!("contact.{}.between", contact.name), rule, remedy);
             }
         }

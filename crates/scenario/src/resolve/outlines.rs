@@ -274,7 +274,7 @@ enum OfKind {
 }
 
 /// A number with six digits, for messages.
-fn few_digits(x: f64) -> f64 {
+pub(super) fn few_digits(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
 }
 

@@ -566,7 +566,7 @@ fn pushed_by_a_rise(before: f64, lasting: f64) -> (String, f64) {
     const AT: f64 = 0.0205;
     let limit = 0.3 * G;
     let scene = format!(
-        "[time]\nend = '0.1 s'\n[ground]\n[block.b]\nmass = '1 kg'\ninertia = '0.1 kg m^2'\nwidth = '0.4 m'\nheight = '0.02 m'\n\
+        "[time]\nend = '0.1 s'\n[ground]\n[block.b]\nmass = '1 kg'\ninertia = '0.04 kg m^2'\nwidth = '0.4 m'\nheight = '0.02 m'\n\
          on = 'ground'\nat = '0 m'\n[contact.c]\nbetween = ['b', 'ground']\nfriction = 0.3\n\
          [signal.s]\nshape = 'ramp'\nstart = '{AT} s'\nduration = '{lasting} s'\n\
          [force.f]\non = 'b'\nforce = ['{} N', '0 N']\nsignal = 's'\n[force.g]\non = 'b'\nforce = ['{before} N', '0 N']\n",

@@ -36,6 +36,7 @@ mod stacks;
 mod threads;
 mod together;
 mod too_fast;
+mod ways_out;
 mod work;
 mod writing;
 

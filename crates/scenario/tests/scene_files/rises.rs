@@ -7,7 +7,7 @@ use teeter_scenario::simulation::Simulation;
 /// A block with friction 0.3 on the ground, and what else there is.
 fn block(more: &str) -> String {
     format!(
-        "[time]\nend = '0.1 s'\n[ground]\n[block.b]\nmass = '1 kg'\ninertia = '0.1 kg m^2'\nwidth = '0.4 m'\nheight = '0.02 m'\n\
+        "[time]\nend = '0.1 s'\n[ground]\n[block.b]\nmass = '1 kg'\ninertia = '0.04 kg m^2'\nwidth = '0.4 m'\nheight = '0.02 m'\n\
          on = 'ground'\nat = '0 m'\n[contact.c]\nbetween = ['b', 'ground']\nfriction = 0.3\n{more}"
     )
 }
@@ -32,7 +32,7 @@ fn rows_of_another_force_hide_no_rise() {
     let rows: String = (0..4000).map(|row| format!("{} {}\n", f64::from(row) * 5e-5, ripple(row))).collect();
     let other = |on: &str| {
         format!(
-            "[block.other]\nmass = '1 kg'\ninertia = '0.1 kg m^2'\nwidth = '0.4 m'\nheight = '0.02 m'\non = 'ground'\nat = '2 m'\n\
+            "[block.other]\nmass = '1 kg'\ninertia = '0.04 kg m^2'\nwidth = '0.4 m'\nheight = '0.02 m'\non = 'ground'\nat = '2 m'\n\
              [contact.d]\nbetween = ['other', 'ground']\nfriction = 0.3\n[signal.rows]\nshape = 'table'\nfile = 'rows.csv'\n\
              [force.g]\non = '{on}'\nforce = ['0 N', '0.001 N']\nsignal = 'rows'\n"
         )

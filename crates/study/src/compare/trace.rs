@@ -62,6 +62,26 @@ pub enum TraceError {
     TooShort,
 }
 
+/// The block that is meant, of these of a table.
+fn chosen<'a>(block: Option<&str>, names: &[&'a str]) -> Result<&'a str, TraceError> {
+    /// Most names in a message.
+    const LISTED: usize = 20;
+    let known = || {
+        let listed: Vec<_> = names.iter().take(LISTED).map(|name| format!("`{name}`")).collect();
+        let more = names.len().saturating_sub(LISTED);
+        listed.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
+    };
+    match (block, names) {
+        (_, []) => Err(TraceError::NoBlock),
+        (Some(block), names) => match names.iter().find(|name| **name == block) {
+            Some(found) => Ok(found),
+            None => Err(TraceError::Block { block: block.to_owned(), known: known() }),
+        },
+        (None, [block]) => Ok(block),
+        (None, _) => Err(TraceError::Several { known: known() }),
+    }
+}
+
 /// The motion of a block, between rows by the cubics through positions and velocities.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MotionTrace {
@@ -82,21 +102,39 @@ impl MotionTrace {
     /// If the table isn't one of a run, or the block isn't in it.
     pub fn read(table: &str, block: Option<&str>) -> Result<(String, Self), TraceError> {
         let names: Vec<&str> = Self::blocks(table).collect();
-        let known = || names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-        let block = match (block, names.as_slice()) {
-            (_, []) => return Err(TraceError::NoBlock),
-            (Some(block), names) if names.contains(&block) => block,
-            (Some(block), _) => return Err(TraceError::Block { block: block.to_owned(), known: known() }),
-            (None, [block]) => block,
-            (None, _) => return Err(TraceError::Several { known: known() }),
-        };
+        let block = chosen(block, &names)?;
+        Self::read_columns(table, block, |name| format!("{block}.{name}"), |_| true)
+    }
+
+    /// As [`Self::read`], from the text of a `blocks.csv`, which has a row for each block at each time.
+    ///
+    /// # Errors
+    /// If the table isn't one of a run, or the block isn't in it.
+    pub fn read_rows(table: &str, block: Option<&str>) -> Result<(String, Self), TraceError> {
+        let name_of = |line: &'_ str| line.split(',').nth(1).map(str::to_owned);
+        let time_of = |line: &'_ str| line.split(',').next().map(str::to_owned);
+        let first = table.lines().nth(1).and_then(time_of);
+        let names: Vec<String> =
+            table.lines().skip(1).take_while(|line| time_of(line) == first).filter_map(name_of).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let block = chosen(block, &names)?;
+        Self::read_columns(table, block, str::to_owned, |line| line.split(',').nth(1) == Some(block))
+    }
+
+    /// Reads columns of these names from the lines that are the block's.
+    fn read_columns(
+        table: &str,
+        block: &str,
+        column: impl Fn(&str) -> String,
+        is_of_block: impl Fn(&str) -> bool,
+    ) -> Result<(String, Self), TraceError> {
         let heading: Vec<&str> = table.lines().next().unwrap_or_default().split(',').collect();
-        let place = |name: &str| heading.iter().position(|cell| *cell == format!("{block}.{name}"));
+        let place = |name: &str| heading.iter().position(|cell| *cell == column(name));
         let wanted: Option<Vec<usize>> = ["x", "y", "phi", "vx", "vy", "omega"].into_iter().map(place).collect();
         let row_error = |line: usize, what: String| TraceError::Row { line, what };
         let wanted = wanted.ok_or_else(|| row_error(1, format!("columns of `{block}` are missing")))?;
         let mut trace = Self::default();
-        for (number, line) in table.lines().enumerate().skip(1) {
+        for (number, line) in table.lines().enumerate().skip(1).filter(|(_, line)| is_of_block(line)) {
             let cells: Vec<&str> = line.split(',').collect();
             let number_in = |place: usize| {
                 let cell = cells.get(place).copied().unwrap_or_default();
@@ -229,5 +267,22 @@ mod tests {
         assert!(trace.at(1.01).is_none());
         assert!(MotionTrace::read(&table, Some("c")).unwrap_err().to_string().contains("`b`"));
         assert!(matches!(MotionTrace::read("t,w\n0,1\n", None), Err(TraceError::NoBlock)));
+    }
+
+    #[test]
+    fn rows_of_a_block_are_read_as_its_columns() {
+        let (mut columns, mut rows) = ("t,a.x,a.y,a.phi,a.vx,a.vy,a.omega\n".to_owned(), String::new());
+        rows += "t,block,x,y,phi,vx,vy,omega\n";
+        for k in 0..5 {
+            let (t, phi) = (0.1 * f64::from(k), f64::from(k * k));
+            columns += &format!("{t:?},1.0,2.0,{phi:?},3.0,4.0,5.0\n");
+            rows += &format!("{t:?},ab,0.0,0.0,0.0,0.0,0.0,0.0\n{t:?},a,1.0,2.0,{phi:?},3.0,4.0,5.0\n");
+        }
+        assert_eq!(MotionTrace::read_rows(&rows, Some("a")), MotionTrace::read(&columns, Some("a")));
+        let known = |block| MotionTrace::read_rows(&rows, block).unwrap_err().to_string();
+        assert!(known(Some("b")).contains("`ab`, `a`") && known(None).contains("several blocks"), "{}", known(None));
+        let many: String = (0..30).map(|k| format!("0.0,b-{k},0.0,0.0,0.0,0.0,0.0,0.0\n")).collect();
+        let told = MotionTrace::read_rows(&format!("t,block,x,y,phi,vx,vy,omega\n{many}"), None).unwrap_err();
+        assert!(told.to_string().contains("`b-19` and 10 more"), "{told}");
     }
 }
