@@ -343,7 +343,7 @@ fn table(text: &str) -> (Vec<&str>, Vec<Vec<&str>>) {
     (lines.next().unwrap(), lines.collect())
 }
 
-/// 30 000 columns are of no use to anyone: beyond 500 blocks each has a row at each time, with the numbers of the columns that
+/// 30 000 columns are of no use to anyone: beyond 2000 blocks each has a row at each time, with the numbers of the columns that
 /// can be asked for.
 #[test]
 fn very_many_blocks_have_rows_instead_of_columns() {
@@ -354,19 +354,19 @@ fn very_many_blocks_have_rows_instead_of_columns() {
         results(&done.folder)
     };
     let text = |files: &BTreeMap<PathBuf, String>, name: &str| files.get(Path::new(name)).cloned();
-    let (few, many) = (run("few", falling_beside(499)), run("many", falling_beside(500)));
-    assert_eq!((text(&few, "blocks.csv"), table(&text(&few, "trajectory.csv").unwrap()).0.len()), (None, 1 + 6 * 500));
+    let (few, many) = (run("few", falling_beside(1999)), run("many", falling_beside(2000)));
+    assert_eq!((text(&few, "blocks.csv"), table(&text(&few, "trajectory.csv").unwrap()).0.len()), (None, 1 + 6 * 2000));
     let trajectory = text(&many, "trajectory.csv").unwrap();
     assert_eq!(table(&trajectory).0, ["t"]);
-    let all = run("all", falling_beside(500).set("output.blocks", "[\"*\"]"));
+    let all = run("all", falling_beside(2000).set("output.blocks", "[\"*\"]"));
     assert_eq!(text(&all, "blocks.csv"), None);
     let (rows, columns) = (text(&many, "blocks.csv").unwrap(), text(&all, "trajectory.csv").unwrap());
     let ((heading, rows), (_, columns)) = (table(&rows), table(&columns));
     assert_eq!(heading, ["t", "block", "x", "y", "phi", "vx", "vy", "omega"]);
-    assert_eq!((rows.len(), columns.len()), (501 * 7, 7));
+    assert_eq!((rows.len(), columns.len()), (2001 * 7, 7));
     for (at, row) in rows.iter().enumerate() {
-        let (time, block) = (&columns[at / 501], at % 501);
-        let name = if block == 500 { "stone".to_owned() } else { format!("post-{}", block + 1) };
+        let (time, block) = (&columns[at / 2001], at % 2001);
+        let name = if block == 2000 { "stone".to_owned() } else { format!("post-{}", block + 1) };
         assert_eq!((row[0], row[1]), (time[0], name.as_str()));
         assert_eq!(row[2..], time[1 + 6 * block..7 + 6 * block]);
     }
@@ -382,7 +382,7 @@ fn very_many_blocks_have_rows_instead_of_columns() {
 #[test]
 fn blocks_that_the_scene_names_have_columns_and_others_are_in_no_table() {
     let place = Place::new("chosen");
-    for fixed in [3, 501] {
+    for fixed in [3, 2001] {
         let job =
             falling_beside(fixed).set("output.blocks", "[\"post-2\", \"s*\"]").folder(place.at(&fixed.to_string()));
         let files = results(&job.prepare().unwrap().run(Hooks::new()).unwrap().folder);
@@ -400,7 +400,7 @@ fn blocks_that_the_scene_names_have_columns_and_others_are_in_no_table() {
 #[test]
 fn a_run_of_very_many_blocks_goes_on_to_the_same_bytes() {
     let place = Place::new("many");
-    let job = || falling_beside(500).checkpoint_every(10.0).existing(ExistingResults::Resume);
+    let job = || falling_beside(2000).checkpoint_every(10.0).existing(ExistingResults::Resume);
     let alone = job().folder(place.at("alone")).prepare().unwrap().run(Hooks::new()).unwrap();
     let cancel = Arc::new(AtomicBool::new(false));
     let stop = |progress: Progress| cancel.store(progress.step >= PROGRESS_STEPS, Ordering::Relaxed);

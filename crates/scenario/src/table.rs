@@ -469,7 +469,7 @@ pub static TABLES: &[TableSchema] = &[
         doc: "Output of results.",
         keys: &[
             key("every", TIME, Optional, "\"1 ms\"", "Time between rows; if left out, every step up to 10 000 rows, evenly thinned beyond; with more than 300 blocks up to 200 000 rows divided by their number, but at least 100."),
-            key("blocks", Kind::Patterns, Optional, "[\"stone-1*\", \"capstone\"]", "The blocks that have columns in trajectory.csv, by names or patterns; the page shows all of them. If left out, all of up to 500 blocks have columns; of more blocks none has, and blocks.csv has a row for each of them at each time."),
+            key("blocks", Kind::Patterns, Optional, "[\"stone-1*\", \"capstone\"]", "The blocks that have columns in trajectory.csv, by names or patterns; the page shows all of them. If left out, all of up to 2000 blocks have columns; of more blocks none has, and blocks.csv has a row for each of them at each time."),
             key("figure_width", Kind::Quantity(Dimension::LENGTH, FIGURE_WIDTH), Default("\"120 mm\""), "\"84 mm\"", "Width of the figures: 84 mm and 174 mm are one and two columns of most journals. Their type is 7 to 8 pt at any width."),
             key("length_unit", Kind::Choice(&["mm", "cm", "m"]), Optional, "\"mm\"", "Unit of lengths on the axes of page and figures; if left out, the one that the scene uses most. What is too small to be read in it has a smaller one. Tables are in SI units."),
             key("angle_unit", Kind::Choice(&["deg", "mrad", "rad"]), Optional, "\"rad\"", "Unit of angles on the axes of page and figures; if left out, the one that the scene uses most, deg if none."),

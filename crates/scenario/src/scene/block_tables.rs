@@ -1,8 +1,7 @@
 //! In which tables the motions of blocks are.
 
-/// Most blocks that all have columns if the scene doesn't choose any: 3000 columns are as many as can be looked through, and
-/// spreadsheets hold 16 384.
-const MOST_IN_COLUMNS: usize = 500;
+/// Most blocks that all have columns if the scene doesn't choose any: spreadsheets hold 16 384 columns, and each block has six.
+const MOST_IN_COLUMNS: usize = 2000;
 
 /// In which tables of a run the motions of blocks are.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
