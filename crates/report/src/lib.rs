@@ -12,6 +12,7 @@ mod contacts;
 mod deflections;
 mod driven;
 mod export;
+mod feet_lines;
 mod lock;
 mod made_energy;
 mod meetings;
@@ -41,6 +42,7 @@ pub use checkpoint::{
 pub use columns::{columns, unit as column_unit};
 pub use deflections::LargestDeflection;
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
+pub use feet_lines::FeetLine;
 pub use made_energy::ENERGY_MADE;
 #[cfg(feature = "animation")]
 pub use page::{Animation, AnimationError, AnimationFormat, AnimationInfo, animate};

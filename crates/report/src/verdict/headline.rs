@@ -115,6 +115,8 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             format!("slid {}, then {back}to {} {side} its start", by(farthest), like(slid.abs(), far, "m"))
         }
     });
+    // Angles count from what carries it, in plots from the horizontal.
+    let against = of.against.as_ref().map_or_else(String::new, |what| format!(" against {what}"));
     let beside = |text: String| if largest.is_empty() { text } else { format!("{text} ({largest})") };
     let tumbled = of.tumbled.map(|turn| format!("tumbled by {}, then ", turns(turn.abs())));
     let moving = if of.is_carried { moving_base(scene, &[of]) } else { "" };
@@ -183,7 +185,7 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             format!("{how} as one with `{}`", of.turns_with.as_deref().unwrap_or_default())
         }
         Fate::Rocks | Fate::Moves if of.on_its_way.is_some() => {
-            let now = of.on_its_way.map_or_else(String::new, angle);
+            let now = of.on_its_way.map_or_else(String::new, |phi| format!("{}{against}", angle(phi)));
             if let Some(way) = of.tips {
                 let past = if of.past_edge == Some(way) { PAST_EDGE } else { "" };
                 return format!("is still tipping to the {}{past}: φ {now} at {}", way.word(), time(end));
@@ -192,7 +194,8 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             format!("has not been upright yet, too short a run to tell how it rocks: φ {now} at {}{most}", time(end))
         }
         Fate::Rocks => {
-            let peak = of.last_peak.map_or_else(String::new, |peak| format!(", last peak {}{at}", angle(peak)));
+            let peak =
+                of.last_peak.map_or_else(String::new, |peak| format!(", last peak {}{against}{at}", angle(peak)));
             let drift = of.slid.is_some_and(|_| has_slid(scene, of));
             let drift = if drift { format!(", {slid}") } else { String::new() };
             beside(format!("rocks on{peak}{drift}"))
