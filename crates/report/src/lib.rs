@@ -4,6 +4,7 @@
 //! `summary.json` holds. [`RunRecorder`] has all that a run of the program writes, and checkpoints from which it goes on to
 //! the same bytes. Numbers are written so that they read back to the same double.
 
+mod all_digits;
 mod bounces;
 mod checkpoint;
 mod closed;

@@ -442,10 +442,13 @@ impl Observer<2> for Recorder<'_> {
         self.kept.resolution.start(self.layout, state);
         self.kept.swings.start(&self.watch);
         self.kept.record.fates.start(&self.fate_watch, self.layout, model, state)?;
-        let started = |((tilt, line), place): ((f64, Option<f64>), &BlockPlace)| {
-            (RockingMonitor::new(state.t, tilt).with_least(place.still), FeetLine::new(line))
+        let started = |(((tilt, line), place), rocks): (((f64, Option<f64>), &BlockPlace), f64)| {
+            // A beam that vibrates lifts the feet of what stands on it by turns, which is no rocking.
+            let least = if line.is_some() { place.still.max(rocks) } else { place.still };
+            (RockingMonitor::new(state.t, tilt).with_least(least), FeetLine::new(line))
         };
-        let started = self.kept.record.fates.tilts().zip(&self.layout.blocks).map(started);
+        let started =
+            self.kept.record.fates.tilts().zip(&self.layout.blocks).zip(self.fate_watch.least_swings()).map(started);
         (self.kept.record.rocking, self.kept.record.feet_lines) = started.unzip();
         self.places.look(self.layout, state, &mut self.kept.record.deflections);
         let (record, values) = (&mut self.kept.record, &mut self.kept.section_values);

@@ -192,6 +192,9 @@ pub struct BodyVerdict {
     /// Of a block that left its beam: which.
     #[serde(skip)]
     pub(crate) left_beam: Option<String>,
+    /// Of a block that overturned: past which end of the beam that carried it, directly or by others, it has fallen since, and which beam that is.
+    #[serde(skip)]
+    pub(crate) fell_off: Option<(Way, String)>,
     /// Whether it still touches that.
     #[serde(skip)]
     pub(crate) touches_beam: bool,
@@ -398,6 +401,14 @@ impl Watch {
         let level = self.blocks[number].outline.as_ref().map_or(0.0, Outline::level);
         let chord = self.blocks[lowest].chord(layout, lowest, state);
         chord.map_or_else(|| self.blocks[number].slope(&state.q), |chord| chord - level)
+    }
+
+    /// From which angle on each block rocks, in a word, rad; 0 of one that can't overturn.
+    pub(crate) fn least_swings(&self) -> impl Iterator<Item = f64> {
+        let stance = |block: &Watched| block.outline.as_ref().and_then(|outline| outline.stance(outline.level()));
+        self.blocks
+            .iter()
+            .map(move |block| stance(block).map_or(0.0, |stance| 0.5 * ROCKED * (stance.left.top - stance.right.top)))
     }
 
     /// From now on stances are taken from there, and entered.
@@ -893,6 +904,13 @@ impl Seen {
             tips,
             stood_on: beam(is_here && self.never_moved(watched, least)),
             left_beam: beam(what == Fate::Left),
+            fell_off: (what == Fate::Overturned)
+                .then(|| {
+                    let q = &state.q[layout.blocks[number].range.clone()];
+                    watched.carrier.below_an_end([q[0], q[1]], watched.reach, layout, &state.q)
+                })
+                .flatten()
+                .map(|(way, beam)| (way, layout.beams[beam].name.clone())),
             touches_beam: what == Fate::Left && touches_beam,
             past_edge: self.past_edge,
             overturned_with: None,

@@ -58,8 +58,7 @@ impl HalfCycle {
 /// A peak below this part of the critical angle is no rocking: a passage between two such is left out.
 const LEAST: f64 = 1e-3;
 
-/// A peak below this part of the critical angle is no measure for the next one, and on a beam no rocking: what stands on one that vibrates lifts
-/// its feet by turns.
+/// A peak below this part of the critical angle is no measure for the next one.
 const TELLING: f64 = 1e-2;
 
 /// How high the mass centre of a block with this critical angle (rad) is over where it would be if the block stood flat on a base of this slope
@@ -125,8 +124,7 @@ pub(crate) fn half_cycles_and_left_out(
             if !stands(crossing.t) {
                 continue;
             }
-            let least = if before.is_some_and(|peak| peak.line.is_some()) { TELLING } else { LEAST };
-            if size(before.as_ref()).max(size(peaks.peek())) < least * alpha {
+            if size(before.as_ref()).max(size(peaks.peek())) < LEAST * alpha {
                 continue;
             }
             let nearest = before.and_then(|peak| {

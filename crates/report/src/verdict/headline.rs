@@ -2,6 +2,7 @@
 
 use super::carrier::{Driven, driven_below};
 use super::{BodyVerdict, Fate, Going, Side};
+use crate::all_digits::{all_digits, with_all_digits};
 use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
 use teeter_integrator::State;
@@ -75,11 +76,11 @@ fn part(x: f64) -> String {
 
 /// A number with three digits, for prose.
 fn digits(x: f64) -> String {
-    teeter_scenario::readable::shortest(x, 3)
+    all_digits(x, 3)
 }
 
 fn time(t: f64) -> String {
-    format!("t = {}", with_unit(t, "s"))
+    format!("t = {}", with_all_digits(t, "s", 4))
 }
 
 /// An angle in degrees.
@@ -129,16 +130,20 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         degrees if degrees.ends_with('°') => format!(", turned by {degrees} in all"),
         turns => format!(", made {turns} in all"),
     });
+    let off = of
+        .fell_off
+        .as_ref()
+        .map_or_else(String::new, |(way, beam)| format!(", then fell off the {} end of `{beam}`", way.word()));
     let fate = match of.what {
         Fate::Overturned if of.t == Some(0.0) => {
-            format!("began past its critical angle and overturned to the {way}{turned}{then_rested}")
+            format!("began past its critical angle and overturned to the {way}{off}{turned}{then_rested}")
         }
         Fate::Overturned => {
             let with = of.overturned_with.as_ref().map_or_else(String::new, |lowest| match *lowest == of.body {
                 true => " as the lowest of a column".to_owned(),
                 false => format!(" as one with `{lowest}`"),
             });
-            format!("overturned{with} to the {way}{at}{turned}{then_rested}")
+            format!("overturned{with} to the {way}{at}{off}{turned}{then_rested}")
         }
         Fate::Left => {
             let beam = of.left_beam.as_ref().map_or_else(|| "its beam".to_owned(), |name| format!("`{name}`"));
@@ -361,6 +366,20 @@ fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
         }
         tell(&alone, "overturned", "first");
         tell(&fell, "fell from its place", "first");
+    }
+    // A single one that overturned has this in its own words.
+    let overturned = of(&[Fate::Overturned]);
+    let told_alone = |block: &&BodyVerdict| {
+        !collapsed
+            && block.overturned_with.is_none()
+            && overturned.iter().filter(|of| of.overturned_with.is_none()).count() == 1
+    };
+    let mut off: Vec<&BodyVerdict> =
+        overturned.iter().copied().filter(|of| of.fell_off.is_some() && !told_alone(of)).collect();
+    while let Some((way, beam)) = off.first().and_then(|of| of.fell_off.clone()) {
+        let (same, others) = off.into_iter().partition::<Vec<_>, _>(|of| of.fell_off == Some((way, beam.clone())));
+        tell(&same, &format!("then fell off the {} end of `{beam}`", way.word()), "");
+        off = others;
     }
     let (tipped, left): (Vec<_>, Vec<_>) = of(&[Fate::Left]).into_iter().partition(|of| of.touches_beam);
     tell(&left, "left their beam", "first");

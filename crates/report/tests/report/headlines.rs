@@ -336,7 +336,7 @@ fn energies_have_at_most_four_digits_before_the_point() {
 /// A post off midspan rocks about the slope of the sagging deck: from there it is lifted less and less, while every other peak grows.
 #[test]
 fn rocking_on_a_sloping_deck_counts_from_the_line_between_the_feet() {
-    let text = "[time]\nend = '1 s'\nstep = '50 us'\n[material.steel]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n[beam.deck]\n\
+    let text = "[time]\nend = '1.6 s'\nstep = '50 us'\n[material.steel]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n[beam.deck]\n\
         material = 'steel'\nspan = '2 m'\nwidth = '12 cm'\nthickness = '12 mm'\nelements = 20\nsupports = ['pinned', 'pinned']\n\
         damping_ratio = { mode = 1, ratio = 0.02 }\nstart = 'static'\nself_weight = true\n[block.post]\ndensity = '2400 kg/m^3'\n\
         width = '6 cm'\nheight = '30 cm'\ndepth = '8 cm'\non = 'deck'\nat = '30 cm'\ntilt = '5 deg'\n[contact.c]\n\
@@ -369,4 +369,21 @@ fn a_last_peak_is_told_with_what_it_counts_from() {
     );
     let blocks = run("peak-on-a-block", &blocks.unwrap());
     assert!(blocks.summary.headline.contains("° against `plate` at t = "), "{}", blocks.summary.headline);
+}
+
+/// "Overturned" alone leaves open that a stone isn't there any more.
+#[test]
+fn what_overturned_and_fell_off_its_beam_is_told_to() {
+    let text = "[time]\nend = '1.2 s'\nstep = '200 us'\n[material.steel]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n[beam.deck]\n\
+        material = 'steel'\nspan = '50 cm'\nwidth = '12 cm'\nthickness = '12 mm'\nelements = 10\nsupports = ['clamped', 'free']\n\
+        [block.post]\ndensity = '2400 kg/m^3'\nwidth = '6 cm'\nheight = '30 cm'\ndepth = '8 cm'\non = 'deck'\nat = 'AT'\n\
+        tilt = '-13 deg'\n[contact.c]\nbetween = ['post', 'deck']\nfriction = 0.5\n";
+    let told = |at: &str| run(&format!("off-{}", &at[..2]), &text.replace("AT", at)).summary.headline;
+    let off = "overturned to the right, then fell off the right end of `deck`";
+    assert!(told("46 cm").contains(off), "{}", told("46 cm"));
+    assert!(
+        told("10 cm").contains("overturned to the right") && !told("10 cm").contains("fell off"),
+        "{}",
+        told("10 cm")
+    );
 }

@@ -169,9 +169,9 @@ pub(super) fn rocking(
     );
     html.push_str(match (decays, lifts) {
         (_, false) => "Passages between two peaks below a thousandth of the critical angle are left out. ",
-        (false, true) => "Passages between two peaks below a hundredth of the critical angle are left out. ",
+        (false, true) => "Swings of less than a hundredth of the critical angle don’t count. ",
         (true, true) => {
-            "Passages between two peaks below a thousandth, on a beam a hundredth, of the critical angle are left out. "
+            "Passages between two peaks below a thousandth of the critical angle are left out, on a beam swings of less than a hundredth. "
         }
     });
     if hits && on_beams {
