@@ -47,7 +47,10 @@ mod tests {
             [1.798, 1.8, 0.05004, -1.699, 20.0].map(|x| all_digits(x, 3)),
             ["1.80", "1.8", "0.0500", "-1.70", "20"]
         );
-        assert_eq!((with_all_digits(1.0049e-3, "J", 3), with_all_digits(0.0, "J", 3)), ("1.00 mJ".into(), "0 J".into()));
+        assert_eq!(
+            (with_all_digits(1.0049e-3, "J", 3), with_all_digits(0.0, "J", 3)),
+            ("1.00 mJ".into(), "0 J".into())
+        );
         assert_eq!(
             (all_digits(1e-9 * 1.001, 3), with_all_digits(0.12 + 1e-14, "s", 4)),
             ("1e-9".into(), "120 ms".into())

@@ -180,7 +180,9 @@ impl Filter {
             let mut first = begin;
             while first < end {
                 let after = borders.partition_point(|border| *border < borders[first] + self.period);
-                let after = after.clamp(first + 1, end);
+                // A short rest, which may hold no peak, belongs to the period before it.
+                let is_rest = borders[end] - borders[after.min(end)] < 0.5 * self.period;
+                let after = if is_rest { end } else { after.clamp(first + 1, end) };
                 let (at, most) = (first..after)
                     .map(|k| (k, highest[k]))
                     .fold((first, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
