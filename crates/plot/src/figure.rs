@@ -1,6 +1,6 @@
 //! A figure: stacked panels with a common x axis, as SVG.
 
-use crate::legend::Legend;
+use crate::legend::{Legend, NOTE_LEFT, ROW, note_lines};
 use crate::theme::{Colour, Theme};
 use crate::ticks::{Ticks, text_width};
 use crate::{Axis, Panel, escaped};
@@ -28,6 +28,8 @@ pub struct Figure {
     legend: Legend,
     theme: Theme,
     headed: bool,
+    /// Below the x axis.
+    note: Option<String>,
     /// In the units of the drawing.
     width: f64,
 }
@@ -100,7 +102,7 @@ impl Figure {
     pub fn new(id: &str, title: impl Into<String>, x: Axis) -> Self {
         let id = id.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' }).collect();
         let (legend, theme) = (Legend::default(), Theme::default());
-        Self { id, title: title.into(), x, panels: Vec::new(), legend, theme, headed: false, width: WIDTH }
+        Self { id, title: title.into(), x, panels: Vec::new(), legend, theme, headed: false, note: None, width: WIDTH }
     }
 
     /// Adds to the id, for the same figure once more in a document.
@@ -138,6 +140,13 @@ impl Figure {
         self
     }
 
+    /// Sets a note on all panels, below the x axis.
+    #[must_use]
+    pub fn note(mut self, note: impl Into<Option<String>>) -> Self {
+        self.note = note.into();
+        self
+    }
+
     /// Sets the width, mm, from 60 to 300: type and lines keep their size, so that a figure fits the
     /// column of a journal as it is. Default: 120 mm.
     #[must_use]
@@ -156,7 +165,12 @@ impl Figure {
     fn height(&self) -> f64 {
         let above = if self.headed { HEADING } else { 0.0 };
         let panels = self.panels.iter().map(|panel| self.heights(panel));
-        above + panels.map(|(header, inner)| header + inner).sum::<f64>() + FOOTER
+        let noted = self.note_lines().len() as f64 * ROW;
+        above + panels.map(|(header, inner)| header + inner).sum::<f64>() + FOOTER + noted
+    }
+
+    fn note_lines(&self) -> Vec<String> {
+        note_lines(self.note.as_deref(), self.width)
     }
 
     /// The figure as an SVG document, which can also be embedded in an HTML page.
@@ -191,6 +205,15 @@ impl Figure {
             top += height;
         }
         self.draw_x_axis(&mut svg, top);
+        for (k, line) in self.note_lines().iter().enumerate() {
+            let _ = writeln!(
+                svg,
+                "<text x=\"{NOTE_LEFT}\" y=\"{:.2}\" fill=\"{}\">{}</text>",
+                top + FOOTER + ROW * (k as f64 + 0.5),
+                Colour::Muted.value(self.theme),
+                escaped(line)
+            );
+        }
         svg.push_str("</svg>\n");
         svg
     }
@@ -237,6 +260,19 @@ impl Figure {
 mod tests {
     use super::*;
     use crate::Series;
+
+    #[test]
+    fn a_note_on_all_panels_is_below_the_axis_and_makes_the_figure_taller() {
+        let panel = Panel::new(Axis::between("y", 0.0, 1.0)).with([Series::line("", [(0.0, 0.0), (1.0, 1.0)])]);
+        let figure = Figure::new("f", "t", Axis::between("x", 0.0, 1.0)).panel(panel).width_mm(84.0);
+        let noted =
+            figure.clone().note("pale: all steps; strong: without vibrations of periods below 20 ms".to_owned());
+        let lines = noted.note_lines();
+        assert_eq!(lines.len(), 2);
+        assert!((noted.height_mm() - figure.height_mm() - 2.0 * ROW / UNITS_PER_MM).abs() < 1e-9);
+        let svg = noted.to_svg();
+        assert!(lines.iter().all(|line| svg.contains(&format!(">{line}</text>"))), "{svg}");
+    }
 
     #[test]
     fn at_any_width_type_keeps_its_size() {

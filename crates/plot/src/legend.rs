@@ -45,7 +45,7 @@ const SAMPLE: f64 = 14.0;
 const AFTER_SAMPLE: f64 = 4.0;
 
 /// Row distance above a panel, and beside it.
-const ROW: f64 = 14.0;
+pub(crate) const ROW: f64 = 14.0;
 const ROW_BESIDE: f64 = 15.0;
 
 /// Distance from the lowest row to the panel below.
@@ -215,11 +215,11 @@ impl Legend {
 }
 
 /// Room at the left of a note as long as the figure is wide.
-const NOTE_LEFT: f64 = 4.0;
+pub(crate) const NOTE_LEFT: f64 = 4.0;
 
 /// A note in as few lines as are as wide as the figure, about equally long, broken between words but not before a unit; a word longer than that has a
 /// line of its own.
-fn note_lines(note: Option<&str>, across: f64) -> Vec<String> {
+pub(crate) fn note_lines(note: Option<&str>, across: f64) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();
     for word in note.into_iter().flat_map(|note| note.split(' ')) {
         match words.last_mut() {

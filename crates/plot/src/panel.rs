@@ -129,6 +129,21 @@ impl Panel {
         self
     }
 
+    /// The note above the right end, without what is said of curves that coincide.
+    #[must_use]
+    pub fn own_note(&self) -> Option<&str> {
+        self.note.as_deref()
+    }
+
+    /// What its y axis is of, without the unit; empty of bands.
+    #[must_use]
+    pub fn quantity(&self) -> &str {
+        match &self.content {
+            Content::Plot { y, .. } => y.label.split(" (").next().unwrap_or_default(),
+            Content::Bands { .. } => "",
+        }
+    }
+
     /// Sets or removes a note above the right end.
     #[must_use]
     pub fn note(mut self, note: impl Into<Option<String>>) -> Self {

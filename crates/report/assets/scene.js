@@ -230,6 +230,8 @@ const scene = (() => {
   /** Opens the picture closer where one of all would show specks, and returns what to say of it; null where it shows all. */
   function closeUp() {
     if (isFarFlung(whole.scale)) return nearFew();
+    const fall = nearFall();
+    if (fall !== null) return fall;
     if (free.length < 3) return null;
     const places = free.map((k) => truePose(k, 0).x);
     const apart = Math.max(...places) - Math.min(...places);
@@ -239,6 +241,31 @@ const scene = (() => {
     const { x, y } = truePose(chosen, 0);
     look(x, y - 0.6 * size, seen / size);
     return `Opened close to ${scenery.blocks[chosen].name}; “Show all” shows all ${scenery.blocks.length} bodies. `;
+  }
+
+  /** Of what falls off a beam, with no ground that would catch it: opens on all but the fall, which would leave most of the picture empty. */
+  function nearFall() {
+    if (scenery.ground || !scenery.beams.length) return null;
+    const lowest = Math.min(...scenery.beams.map((beam, k) => beam.y + moved(k, 0)[1]));
+    const isBelow = (k, at) => truePose(k, at).y < lowest - 2 * scenery.blocks[k].reach;
+    const falling = free.filter((k) => isBelow(k, times.length - 1));
+    if (!falling.length) return null;
+    const ends = scenery.beams.flatMap((beam, k) => [leftOf(k, 0), leftOf(k, 0) + beam.span]);
+    const box = [Math.min(...ends), lowest, Math.max(...ends), lowest];
+    scenery.blocks.forEach(({ reach }, k) => {
+      for (let at = 0; at < times.length; at++) {
+        if (isBelow(k, at)) continue;
+        const { x, y } = truePose(k, at);
+        [box[0], box[1]] = [Math.min(box[0], x - reach), Math.min(box[1], y - reach)];
+        [box[2], box[3]] = [Math.max(box[2], x + reach), Math.max(box[3], y + reach)];
+      }
+    });
+    const [inner, tall] = [width - padding.left - padding.right, height - padding.top - padding.bottom];
+    const scale = Math.min(inner / (box[2] - box[0]), tall / (box[3] - box[1]));
+    if (!(scale > 1.3 * whole.scale)) return null;
+    look((box[0] + box[2]) / 2, box[1], scale);
+    const who = falling.length > 1 ? `${falling.length} bodies fall` : `${scenery.blocks[falling[0]].name} falls`;
+    return `Opened close to where ${who} off; “Show all” shows the whole way. `;
   }
 
   /** How far a body is at the end from where it began. */

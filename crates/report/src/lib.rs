@@ -4,6 +4,7 @@
 //! `summary.json` holds. [`RunRecorder`] has all that a run of the program writes, and checkpoints from which it goes on to
 //! the same bytes. Numbers are written so that they read back to the same double.
 
+mod all_digits;
 mod bounces;
 mod checkpoint;
 mod closed;
@@ -12,6 +13,7 @@ mod contacts;
 mod deflections;
 mod driven;
 mod export;
+mod feet_lines;
 mod lock;
 mod made_energy;
 mod meetings;
@@ -41,6 +43,7 @@ pub use checkpoint::{
 pub use columns::{columns, unit as column_unit};
 pub use deflections::LargestDeflection;
 pub use export::{ExportWhen, Exporter, Former, HARD, Watch};
+pub use feet_lines::FeetLine;
 pub use made_energy::ENERGY_MADE;
 #[cfg(feature = "animation")]
 pub use page::{Animation, AnimationError, AnimationFormat, AnimationInfo, animate};

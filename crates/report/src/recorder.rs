@@ -5,6 +5,7 @@ use crate::closed::Closed;
 use crate::contacts::{self, AtEnd, Impulses, push_names};
 use crate::deflections::{LargestDeflection, Places};
 use crate::driven::Driven;
+use crate::feet_lines::FeetLine;
 use crate::meetings::Met;
 use crate::number::{push, push_next};
 use crate::resolution::{Bodies, Resolution};
@@ -23,7 +24,7 @@ use teeter_integrator::{
 use teeter_scenario::Shapes;
 use teeter_scenario::diagnostic::Diagnostic;
 use teeter_scenario::scene::{Scene, SchemeName};
-use teeter_scenario::simulation::Layout;
+use teeter_scenario::simulation::{BlockPlace, Layout};
 
 mod alarms;
 
@@ -60,6 +61,9 @@ pub struct Record {
     pub horizon: Option<f64>,
     /// Zero crossings and peaks, by block.
     pub rocking: Vec<RockingMonitor>,
+    /// How the lines between the feet of blocks on beams sloped at their peaks, by block.
+    #[serde(default)]
+    pub feet_lines: Vec<FeetLine>,
     /// What beams bore, of those that are asked.
     pub beams: Vec<BeamRecord>,
     /// The largest deflections, of a scene without blocks.
@@ -476,11 +480,18 @@ impl Observer<2> for Recorder<'_> {
         // A run that starts from the state of another one has its rows from there on.
         self.kept.schedule = self.kept.schedule.clone().starting_at(state.step);
         (self.kept.row_at, self.kept.record.first_step) = (state.step, state.step);
-        self.kept.record.rocking = self.layout.rocking_monitors(state.t, &state.q);
         self.kept.closings = ClosingMonitor::new(model, state, &self.layout.openings)?;
         self.kept.resolution.start(self.layout, state);
         self.kept.swings.start(&self.watch);
         self.kept.record.fates.start(&self.fate_watch, self.layout, model, state)?;
+        let started = |(((tilt, line), place), rocks): (((f64, Option<f64>), &BlockPlace), f64)| {
+            // A beam that vibrates lifts the feet of what stands on it by turns, which is no rocking.
+            let least = if line.is_some() { place.still.max(rocks) } else { place.still };
+            (RockingMonitor::new(state.t, tilt).with_least(least), FeetLine::new(line))
+        };
+        let started =
+            self.kept.record.fates.tilts().zip(&self.layout.blocks).zip(self.fate_watch.least_swings()).map(started);
+        (self.kept.record.rocking, self.kept.record.feet_lines) = started.unzip();
         self.places.look(self.layout, state, &mut self.kept.record.deflections);
         let (record, values) = (&mut self.kept.record, &mut self.kept.section_values);
         self.sections.start(self.layout, state, &mut record.beams, values);
@@ -507,11 +518,13 @@ impl Observer<2> for Recorder<'_> {
         if let Some(text) = self.sections.observe(step, kept, &mut record.warnings) {
             (self.tell)(&text);
         }
-        for (block, monitor) in self.kept.record.rocking.iter_mut().enumerate() {
-            monitor.enter(state.t, self.layout.tilt(block, &state.q));
-        }
         self.places.look(self.layout, state, &mut self.kept.record.deflections);
         self.kept.record.fates.observe(&self.fate_watch, self.layout, step, state);
+        let Record { rocking, feet_lines, fates, .. } = &mut self.kept.record;
+        for ((monitor, line), (tilt, slope)) in rocking.iter_mut().zip(feet_lines).zip(fates.tilts()) {
+            monitor.enter(state.t, tilt);
+            line.enter(monitor, state.t, slope);
+        }
         if self.kept.schedule.takes(state.step, state.t) {
             self.write_rows(model, state)?;
         }

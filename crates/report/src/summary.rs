@@ -95,7 +95,7 @@ pub struct Summary {
     pub reclosure_count: u64,
     /// Steps in which the scheme didn't locate all impacts and ends of slides, or events: the rest of such a step is taken as by a fixed step.
     pub unlocated_steps: u64,
-    /// Zero crossings of the angles.
+    /// Zero crossings of the angles against what carries the blocks, on a beam the line between a block's feet.
     pub crossings: Vec<CrossingRow>,
     /// All crossings, counted; only where the list holds no more than the first of them.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -190,7 +190,7 @@ pub struct PositiveWorkSummary {
     pub sum: f64,
 }
 
-/// A zero crossing of a block's angle.
+/// A zero crossing of a block's angle against what carries it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CrossingRow {
     /// When, s.
@@ -199,7 +199,7 @@ pub struct CrossingRow {
     pub body: String,
 }
 
-/// A peak of a block's angle.
+/// A peak of a block's angle against what carries it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PeakRow {
     /// When, s.
@@ -208,6 +208,9 @@ pub struct PeakRow {
     pub body: String,
     /// The angle, rad.
     pub phi: f64,
+    /// The slope of the line between the block's feet on its beam then, rad, from which the angle counts; none on anything else.
+    #[serde(skip)]
+    pub(crate) line: Option<f64>,
 }
 
 /// What a beam bore, over all steps.
@@ -402,12 +405,18 @@ impl Summary {
             .collect();
         let counted = record.rocking.iter().map(RockingMonitor::count).sum::<u64>();
         crossings.sort_by(|a, b| a.t.total_cmp(&b.t));
+        // A record of crossings alone has none.
+        let lines = record.feet_lines.iter().map(|of| of.slopes().collect()).chain(std::iter::repeat_with(Vec::new));
         let mut peaks: Vec<PeakRow> = monitored()
-            .flat_map(|(block, m)| {
+            .zip(lines)
+            .flat_map(|((block, m), lines)| {
                 // With the one that the headline has, which no crossing has followed yet; not behind a list that is full.
                 let turned = m.turned().filter(|_| m.crossings().len() as u64 == m.count());
-                let row = |p: &Peak| PeakRow { t: p.t, body: block.name.clone(), phi: p.phi };
-                m.peaks().iter().chain(&turned).map(row).collect::<Vec<_>>()
+                let row = |(k, p): (usize, &Peak)| {
+                    let line = lines.get(k).copied().flatten();
+                    PeakRow { t: p.t, body: block.name.clone(), phi: p.phi, line }
+                };
+                m.peaks().iter().chain(&turned).enumerate().map(row).collect::<Vec<_>>()
             })
             .collect();
         peaks.sort_by(|a, b| a.t.total_cmp(&b.t));

@@ -29,6 +29,7 @@ use stance::{Edge, Outline, Stance};
 pub use stance::{SharedStances, Way};
 use standing::{AtStart, Settling};
 use teeter_integrator::{Mismatch, Model, PhaseKind, RockingMonitor, State, StepReport};
+use teeter_scenario::TiltReference;
 use teeter_scenario::scene::{BlockScene, Placement, Scene, StopScene, SupportingBody};
 use teeter_scenario::simulation::Layout;
 
@@ -152,6 +153,9 @@ pub struct BodyVerdict {
     /// The last peak of its rocking, rad; of one that did not cross zero yet the largest angle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub last_peak: Option<f64>,
+    /// Against what its peaks count, in words; none where that is the horizontal.
+    #[serde(skip)]
+    pub(crate) against: Option<String>,
     /// Since when it is still, of one that is so at the end, but not for long enough to rest, s.
     #[serde(skip)]
     pub(crate) still_from: Option<f64>,
@@ -188,6 +192,9 @@ pub struct BodyVerdict {
     /// Of a block that left its beam: which.
     #[serde(skip)]
     pub(crate) left_beam: Option<String>,
+    /// Of a block that overturned: past which end of the beam that carried it, directly or by others, it has fallen since, and which beam that is.
+    #[serde(skip)]
+    pub(crate) fell_off: Option<(Way, String)>,
     /// Whether it still touches that.
     #[serde(skip)]
     pub(crate) touches_beam: bool,
@@ -225,6 +232,9 @@ struct Seen {
     settling: Option<Settling>,
     /// Its angle at the end of the last step, rad.
     angle: f64,
+    /// The same against what carries it ([`Watched::tilt`]), and the slope of the line between its feet on its beam then.
+    #[serde(skip)]
+    tilt: (f64, Option<f64>),
     /// The largest |φ|/α.
     part: Option<f64>,
     /// How far it has turned at most against what carries it, to the left and to the right, rad.
@@ -393,6 +403,14 @@ impl Watch {
         chord.map_or_else(|| self.blocks[number].slope(&state.q), |chord| chord - level)
     }
 
+    /// From which angle on each block rocks, in a word, rad; 0 of one that can't overturn.
+    pub(crate) fn least_swings(&self) -> impl Iterator<Item = f64> {
+        let stance = |block: &Watched| block.outline.as_ref().and_then(|outline| outline.stance(outline.level()));
+        self.blocks
+            .iter()
+            .map(move |block| stance(block).map_or(0.0, |stance| 0.5 * ROCKED * (stance.left.top - stance.right.top)))
+    }
+
     /// From now on stances are taken from there, and entered.
     pub(crate) fn share(&mut self, stances: &std::sync::Arc<SharedStances>) {
         self.blocks.iter_mut().filter_map(|block| block.outline.as_mut()).for_each(|outline| outline.share(stances));
@@ -414,6 +432,29 @@ impl Watched {
     fn chord(&self, layout: &Layout, number: usize, state: &State) -> Option<f64> {
         self.carrier.beam()?;
         self.carrier.chord(self.place(layout, number, state)?, 0.5 * self.base(), layout, &state.q)
+    }
+
+    /// Its angle against what carries it, from which its rocking counts, rad: on a beam against the line between its feet there, about which it
+    /// rocks, however far the beam slopes.
+    ///
+    /// With it comes the slope of that line, rad, if there is one.
+    fn tilt(&self, layout: &Layout, number: usize, state: &State) -> (f64, Option<f64>) {
+        let line = self.chord(layout, number, state);
+        (layout.tilt(number, &state.q) - line.unwrap_or(0.0), line)
+    }
+
+    /// Against what that is, in words; none where it is the horizontal.
+    fn against(&self, layout: &Layout, number: usize, q: &[f64]) -> Option<String> {
+        if let Some(beam) = self.carrier.beam().filter(|_| self.feet.is_some()) {
+            return Some(format!("`{}`", layout.beams[beam].name));
+        }
+        let moving = match layout.blocks[number].tilt_reference {
+            TiltReference::Moving(slope) | TiltReference::MovingIncline(slope, _) => Some(slope),
+            _ => None,
+        };
+        let below = layout.blocks.iter().find(|block| moving == Some(block.range.start + 2));
+        let slopes = || layout.tilt(number, q) != q[layout.blocks[number].range.start + 2];
+        below.map(|block| format!("`{}`", block.name)).or_else(|| slopes().then(|| "the ground".to_owned()))
     }
 
     /// How high its mass centre is over what the scene stands on, m.
@@ -533,6 +574,12 @@ impl Fates {
         Ok(())
     }
 
+    /// The angle of each block against what carries it at the end of the last step, rad, from which its crossings and peaks count; of one on a beam
+    /// with the slope of the line between its feet there.
+    pub(crate) fn tilts(&self) -> impl Iterator<Item = (f64, Option<f64>)> {
+        self.blocks.iter().map(|seen| seen.tilt)
+    }
+
     /// Takes a step in.
     pub(crate) fn observe(&mut self, watch: &Watch, layout: &Layout, step: &StepReport<'_, 2>, state: &State) {
         self.look(watch, layout, step.t_start, state);
@@ -561,6 +608,7 @@ impl Fates {
     fn look(&mut self, watch: &Watch, layout: &Layout, before: f64, state: &State) {
         let floor = watch.floor.depth(layout, &state.q);
         for (number, (seen, watched)) in self.blocks.iter_mut().zip(&watch.blocks).enumerate() {
+            seen.tilt = watched.tilt(layout, number, state);
             if watched.driven {
                 continue;
             }
@@ -605,9 +653,8 @@ impl Fates {
                 }
             }
             seen.angle = q[2];
-            let tilt = layout.tilt(number, &state.q) - watched.chord(layout, number, state).unwrap_or(0.0);
             let [left, right] = &mut seen.turned;
-            (*left, *right) = (left.max(tilt), right.max(-tilt));
+            (*left, *right) = (left.max(seen.tilt.0), right.max(-seen.tilt.0));
             if let Some((from, to)) = seen.stood.zip(watched.place(layout, number, state)) {
                 seen.slides.go_to(to - from, SLID * watched.base());
                 let creeps = FLAT * watched.still_time * watched.still_speed;
@@ -778,7 +825,7 @@ impl Seen {
             Placement::Free { angle, .. } => self.began.map(|_| self.angle - angle),
             Placement::On { .. } => None,
         };
-        let tilt = layout.tilt(number, &state.q);
+        let (tilt, _) = watched.tilt(layout, number, state);
         let turns_on = |monitor: &&RockingMonitor| {
             let way = Way::of(tilt);
             way.sign() * watched.velocity(layout, number, state)[2] > 0.0 && monitor.extreme().phi.abs() <= tilt.abs()
@@ -817,7 +864,7 @@ impl Seen {
             fell_at: fell,
             overturned_at: overturned.map(|(t, _)| t),
             rests_from: rests,
-            leans_at: leans.then_some(tilt),
+            leans_at: leans.then_some(layout.tilt(number, &state.q)),
             lies_on,
             farthest: slid.and_then(|slid| self.slides.farthest(slid, least)),
             to_and_fro: to_and_fro.then(|| self.slides.reached()),
@@ -830,6 +877,7 @@ impl Seen {
             }),
             max_phi_over_alpha: part,
             last_peak: peak.filter(|_| what == Fate::Rocks).map(|peak| peak.phi),
+            against: watched.against(layout, number, &state.q),
             still_from: self.still.filter(|_| rests.is_none()),
             stands_from: since,
             turned: self
@@ -856,6 +904,13 @@ impl Seen {
             tips,
             stood_on: beam(is_here && self.never_moved(watched, least)),
             left_beam: beam(what == Fate::Left),
+            fell_off: (what == Fate::Overturned)
+                .then(|| {
+                    let q = &state.q[layout.blocks[number].range.clone()];
+                    watched.carrier.below_an_end([q[0], q[1]], watched.reach, layout, &state.q)
+                })
+                .flatten()
+                .map(|(way, beam)| (way, layout.beams[beam].name.clone())),
             touches_beam: what == Fate::Left && touches_beam,
             past_edge: self.past_edge,
             overturned_with: None,

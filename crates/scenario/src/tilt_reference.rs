@@ -58,7 +58,7 @@ fn stands(placement: &Placement) -> bool {
 
 impl Layout {
     /// The angle of a block, by its number, relative to the surface that carries it, rad, for
-    /// coordinates `q` of the whole model.
+    /// coordinates `q` of the whole model; on a beam relative to its undeformed axis.
     #[must_use]
     pub fn tilt(&self, block: usize, q: &[f64]) -> f64 {
         let place = &self.blocks[block];

@@ -121,10 +121,11 @@ impl Plots<'_> {
         let (unit, factor) = time_unit(to - from);
         let x = Axis::between(format!("Time t ({unit}){part}"), from, to).shown_in(factor);
         let first = panels.iter().position(Panel::has_ticks);
+        let (panels, note) = noted_once(panels);
         let panels = panels.into_iter().enumerate();
         // Said once in a figure.
         let named = panels.map(|(k, panel)| if first == Some(k) { panel.ticks_named("impact") } else { panel });
-        named.fold(Figure::new(id, title, x), Figure::panel)
+        named.fold(Figure::new(id, title, x).note(note), Figure::panel)
     }
 
     /// A panel with the impacts marked, of one contact or of all: one by one, or how many about each time where they are many.
@@ -155,7 +156,9 @@ impl Plots<'_> {
         let contact = panel.of_contact.as_ref();
         let name = contact.map(|(_, name)| name.clone()).filter(|name| !name.is_empty());
         let notes: Vec<String> = [panel.note.clone(), note.or(name)].into_iter().flatten().collect();
+        let (lines, is_left_out) = without_filled(lines, range);
         let note = (!notes.is_empty()).then(|| notes.join("; "));
+        let note = if is_left_out { note.map(|note| of_strong(&note)) } else { note };
         let drawn = Panel::new(y.clone()).with(lines).telling_apart().note(note);
         self.marked(guided(drawn.levels(panel.guides.clone()), &panel.guides, &y), contact.map(|(pair, _)| *pair))
     }
@@ -355,8 +358,11 @@ impl Plots<'_> {
                     Some((low, high)) => Axis::between(label, low, high),
                     None => Axis::around(label, values(&lines).chain([0.0]), least),
                 };
+                let mut note = note;
                 if what == "Normal" {
-                    lines = over_the_raw(lines, std::mem::take(&mut means));
+                    let (drawn, is_left_out) = without_filled(over_the_raw(lines, std::mem::take(&mut means)), range);
+                    lines = drawn;
+                    note = if is_left_out { note.map(|note| of_strong(&note)) } else { note };
                 }
                 panels.push(self.marked(Panel::new(y).with(lines).telling_apart(), Some(pair)).note(note));
             }
@@ -470,10 +476,144 @@ fn cut_to(at: Option<(f64, f64)>, lines: &[Series], unit: &str) -> (Option<(f64,
     (Some((low, limit)), Some(format!("{what}{} {unit}", shortest(largest, 3))))
 }
 
+/// Of what rings so much that it would be an even grey, the strong curve tells all: lines without what is pale and cut, to both ends of the range, in most
+/// of the time in which it is anything. And whether nothing pale is left.
+fn without_filled(mut lines: Vec<Series>, range: Option<(f64, f64)>) -> (Vec<Series>, bool) {
+    let Some((low, high)) = range.filter(|_| lines.iter().any(Series::is_faint)) else { return (lines, false) };
+    let bottom = low.max(0.0) - (-low).max(0.0) * f64::from(u8::from(low <= -high));
+    let fills = |line: &Series| {
+        let (mut filled, mut all) = (0_usize, 0_usize);
+        let y: Vec<f64> = line.points().iter().map(|point| point.1).collect();
+        for part in y.chunks(STRETCH) {
+            let least = part.iter().copied().fold(f64::INFINITY, f64::min);
+            let most = part.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            all += usize::from(least.abs().max(most.abs()) > 0.01 * high);
+            filled += usize::from(most >= high && least <= bottom);
+        }
+        2 * filled > all && all > 0
+    };
+    lines.retain(|line| !(line.is_faint() && fills(line)));
+    let is_left_out = !lines.iter().any(Series::is_faint);
+    (lines, is_left_out)
+}
+
+/// So many points of a curve are a vertical stroke of its figure.
+const STRETCH: usize = 16;
+
+/// A note without what it says of pale curves, which are left out.
+fn of_strong(note: &str) -> String {
+    let parts = note.split("; ").filter(|part| !part.starts_with("pale: "));
+    parts
+        .map(|part| part.replace("pale curves cut, up to", "vibrations left out, up to"))
+        .collect::<Vec<_>>()
+        .join("; ")
+}
+
+/// What notes of panels say at length stands once below a figure, where more than one says such: of which panels, unless it is of most of them. A short
+/// one that all have, as the name of the only pair, stays at the first.
+fn noted_once(panels: Vec<Panel>) -> (Vec<Panel>, Option<String>) {
+    let parts_of = |panel: &Panel| -> Vec<String> {
+        panel.own_note().into_iter().flat_map(|note| note.split("; ")).map(str::to_owned).collect()
+    };
+    let is_long = |part: &String| part.chars().count() > SHORT;
+    let noted: Vec<usize> = (0..panels.len()).filter(|k| parts_of(&panels[*k]).iter().any(is_long)).collect();
+    if noted.len() < 2 {
+        return (panels, None);
+    }
+    // What is said, of which panels.
+    let mut said: Vec<(String, Vec<usize>)> = Vec::new();
+    for k in &noted {
+        for part in parts_of(&panels[*k]).into_iter().filter(is_long) {
+            match said.iter_mut().find(|(known, _)| *known == part) {
+                Some((_, of)) => of.push(*k),
+                None => said.push((part, vec![*k])),
+            }
+        }
+    }
+    let mut sentences: Vec<(Vec<usize>, String)> = Vec::new();
+    for (part, of) in said {
+        let of = if 2 * of.len() > noted.len() { Vec::new() } else { of };
+        match sentences.iter_mut().find(|(known, _)| *known == of) {
+            Some((_, text)) => *text = format!("{text}; {part}"),
+            None => sentences.push((of, part)),
+        }
+    }
+    // What holds of most comes first.
+    sentences.sort_by_key(|(of, _)| of.first().map_or(0, |first| first + 1));
+    let sentence = |(of, text): (Vec<usize>, String)| {
+        let mut names: Vec<&str> = of.iter().map(|k| panels[*k].quantity()).collect();
+        names.dedup();
+        if names.is_empty() { capitalised(&text) } else { format!("{} – {text}", names.join(", ")) }
+    };
+    let note = sentences.into_iter().map(sentence).collect::<Vec<_>>().join(". ");
+    let plots = panels.iter().filter(|panel| !panel.quantity().is_empty()).count();
+    let of_all =
+        |part: &String| plots > 1 && panels.iter().filter(|panel| parts_of(panel).contains(part)).count() == plots;
+    let short: Vec<Option<String>> = (0..panels.len())
+        .map(|k| {
+            let parts = parts_of(&panels[k]).into_iter().filter(|part| !is_long(part) && (k == 0 || !of_all(part)));
+            Some(parts.collect::<Vec<_>>().join("; ")).filter(|note| !note.is_empty())
+        })
+        .collect();
+    (panels.into_iter().zip(short).map(|(panel, note)| panel.note(note)).collect(), Some(note))
+}
+
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// A part of a note of up to so many characters stays above its panel.
+const SHORT: usize = 46;
+
 /// The y axis of lines that may have been cut to a range.
 fn cut_axis(label: &str, range: Option<(f64, f64)>, lines: &[Series], least: f64) -> Axis {
     match range {
         Some((low, high)) => Axis::between(label, low, high),
         None => Axis::around(label, values(lines), least),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_several_panels_say_at_length_stands_once_below_the_figure() {
+        let panel = |quantity: &str, note: &str| {
+            Panel::new(Axis::between(format!("{quantity} (N)"), 0.0, 1.0))
+                .note((!note.is_empty()).then(|| note.to_owned()))
+        };
+        let of_most = "strong: without vibrations of periods below 20 ms, not across impacts";
+        let own = "strong: through the largest of every 20 ms, not across impacts";
+        let panels = vec![
+            panel("Moment", &format!("book on shelf; {of_most}")),
+            panel("Stress", &format!("book on shelf; {own}")),
+            panel("Reactions", &format!("book on shelf; {of_most}; peaks cut, up to 3 N")),
+        ];
+        let (panels, note) = noted_once(panels);
+        let notes: Vec<Option<&str>> = panels.iter().map(Panel::own_note).collect();
+        assert_eq!(notes, [Some("book on shelf"), None, Some("peaks cut, up to 3 N")]);
+        let capital = capitalised(of_most);
+        assert_eq!(note.unwrap(), format!("{capital}. Stress \u{2013} {own}"));
+        // A single panel keeps its own.
+        let alone = vec![panel("Moment", of_most), panel("Stress", "")];
+        let (panels, note) = noted_once(alone);
+        assert_eq!((panels[0].own_note(), note), (Some(of_most), None));
+    }
+
+    #[test]
+    fn what_would_be_an_even_grey_is_left_out() {
+        let of = |size: f64| {
+            let ringing = (0..400).map(|k| (f64::from(k), if k % 2 == 0 { size } else { -size }));
+            let strong = Series::line("mean", (0..400).map(|k| (f64::from(k), 1.0)));
+            vec![Series::line("", ringing).faint(), strong]
+        };
+        let (lines, is_left_out) = without_filled(of(40.0), Some((-1.5, 1.5)));
+        assert!(is_left_out && lines.len() == 1 && !lines[0].is_faint());
+        // What stays within the range, or has no end that cuts it, is drawn.
+        assert!(!without_filled(of(1.2), Some((-1.5, 1.5))).1 && !without_filled(of(40.0), None).1);
+        let note = of_strong("pale: all steps; strong: means; pale curves cut, up to ±40 N");
+        assert_eq!(note, "strong: means; vibrations left out, up to ±40 N");
     }
 }

@@ -163,23 +163,49 @@ impl Filter {
         (far as f64 > LEAST * own.len() as f64 && crossings as f64 >= periods).then_some(means)
     }
 
-    /// The largest value of a quantity that rings within half of the period on either side, but not across jolts, at the borders of the buckets: what stays of one without a
-    /// sign, as a stress, of which a mean would say nothing. `None` unless it rings.
-    pub(super) fn largest_about(&self, curves: &Curves, column: usize) -> Option<Vec<f64>> {
+    /// Through the largest values of a quantity that rings in every period, but not across jolts, in straight lines from one to the next, at the borders
+    /// of the buckets: what stays of one without a sign, as a stress, of which a mean would say nothing. It rises from a jolt to the largest
+    /// value after it, as what is held there would look like a load that jumps. `None` unless it rings.
+    pub(super) fn through_the_largest(&self, curves: &Curves, column: usize) -> Option<Vec<f64>> {
         self.ringing(curves, column)?;
         let borders = curves.borders();
         let values = curves.curve(column);
         let highest: Vec<f64> = values[1..].chunks_exact(2).map(|pair| pair[0].max(pair[1])).collect();
         let mut largest = vec![0.0; borders.len()];
         for [begin, end] in self.stretches([0, borders.len() - 1]) {
-            for place in begin + usize::from(begin > 0)..=end {
-                let [from, to] = [-0.5, 0.5].map(|part| borders[place] + part * self.period);
-                let first = borders.partition_point(|border| *border <= from).saturating_sub(1).clamp(begin, end - 1);
-                let after = borders.partition_point(|border| *border < to).clamp(first + 1, end);
-                largest[place] = highest[first..after].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let begins = begin + usize::from(begin > 0);
+            // What rang before a jolt rings on.
+            let mut nodes: Vec<(f64, f64)> =
+                (begin > 0).then(|| (borders[begins], highest[begin].max(largest[begin]))).into_iter().collect();
+            let mut first = begin;
+            while first < end {
+                let after = borders.partition_point(|border| *border < borders[first] + self.period);
+                // A short rest, which may hold no peak, belongs to the period before it.
+                let is_rest = borders[end] - borders[after.min(end)] < 0.5 * self.period;
+                let after = if is_rest { end } else { after.clamp(first + 1, end) };
+                let (at, most) = (first..after)
+                    .map(|k| (k, highest[k]))
+                    .fold((first, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
+                if nodes.last().is_none_or(|last| borders[at + 1] > last.0) {
+                    nodes.push((borders[at + 1], most));
+                }
+                first = after;
+            }
+            for place in begins..=end {
+                largest[place] = interpolated(&nodes, borders[place]);
             }
         }
         Some(largest)
+    }
+}
+
+/// Between two of these points, in the order of x, on a straight line; before the first and after the last one their values.
+fn interpolated(nodes: &[(f64, f64)], x: f64) -> f64 {
+    let after = nodes.partition_point(|node| node.0 < x);
+    match (after.checked_sub(1).and_then(|before| nodes.get(before)), nodes.get(after)) {
+        (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0),
+        (Some(only), None) | (None, Some(only)) => only.1,
+        (None, None) => 0.0,
     }
 }
 
@@ -267,7 +293,7 @@ mod tests {
         let stress = |t: f64| (1.0 - 0.5 * t) * (2.0 * std::f64::consts::PI * 400.0 * t).sin().abs();
         let mut curves = Curves::new(400, 0.0, vec![0.0], 0);
         (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[stress(t)]));
-        let largest = plain(&curves).largest_about(&curves, 0).unwrap();
+        let largest = plain(&curves).through_the_largest(&curves, 0).unwrap();
         assert_eq!(largest.len(), curves.borders().len());
         for (largest, t) in largest.iter().zip(curves.borders()) {
             assert!((largest - (1.0 - 0.5 * t)).abs() < 0.02, "{largest} at {t}");
@@ -361,7 +387,7 @@ mod tests {
         let curves = struck(&impacts, ringing);
         let filter = Filter::of(&curves, &jolts(&impacts), &[curves.means(0)]);
         let means = filter.ringing(&curves, 0).unwrap();
-        let largest = filter.largest_about(&curves, 0).unwrap();
+        let largest = filter.through_the_largest(&curves, 0).unwrap();
         for ((t, mean), largest) in curves.borders().into_iter().zip(means).zip(largest) {
             if t < impacts[0] {
                 assert_eq!([mean, largest], [0.0; 2], "at {t}");
@@ -373,6 +399,24 @@ mod tests {
             }
         }
         assert_eq!(filter.told(), "20 ms, not across impacts");
+    }
+
+    /// A vibration that grows from the impact on reaches its largest value 10 ms later: what is strong does no sooner, nor is it held.
+    #[test]
+    fn the_largest_values_after_an_impact_are_no_step() {
+        let tau = 2.0 * std::f64::consts::PI;
+        let stress = |t: f64| (157.0 * (tau * 25.0 * (t - 0.2)).sin()).abs() + 3.0 * (tau * 900.0 * t).sin().abs();
+        let curves = struck(&[0.2], stress);
+        let filter = Filter::of(&curves, &jolts(&[0.2]), &[]);
+        let largest = filter.through_the_largest(&curves, 0).unwrap();
+        let at = |t: f64| largest[curves.borders().partition_point(|border| *border < t)];
+        assert!(
+            at(0.2005) < 30.0 && at(0.205) < 120.0 && at(0.21) > 155.0,
+            "{} {} {}",
+            at(0.2005),
+            at(0.205),
+            at(0.21)
+        );
     }
 
     #[test]

@@ -6,7 +6,8 @@ use crate::Summary;
 use crate::summary::PeakRow;
 use crate::verdict::Fate;
 
-/// A passage of a block through φ = 0, between two peaks of its swing.
+/// A passage of a block through φ = 0, between two peaks of its swing. φ is its angle against what carries it: on a beam against the line between
+/// its feet there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HalfCycle {
     /// The block.
@@ -31,6 +32,12 @@ pub struct HalfCycle {
     pub peak_after: Option<f64>,
     /// The block's critical angle, rad.
     pub alpha: f64,
+    /// Of a block on a beam: how high it is lifted at the peak after, in parts of how high it was at the peak before; on rigid ground that would be the
+    /// square of Housner's ratio. On a beam that slopes, a block swings farther downhill with the same energy, so that the quotient of the
+    /// peaks themselves tells little.
+    pub lift: Option<f64>,
+    /// Whether the peaks count from the line between its feet on a beam.
+    pub on_beam: bool,
 }
 
 impl HalfCycle {
@@ -53,6 +60,13 @@ const LEAST: f64 = 1e-3;
 
 /// A peak below this part of the critical angle is no measure for the next one.
 const TELLING: f64 = 1e-2;
+
+/// How high the mass centre of a block with this critical angle (rad) is over where it would be if the block stood flat on a base of this slope
+/// (rad), from which it is turned by `phi` (rad); in parts of its distance from a corner.
+fn lift(phi: f64, slope: f64, alpha: f64) -> f64 {
+    let top = alpha - phi.signum() * slope;
+    (top - phi.abs()).cos() - top.cos()
+}
 
 /// An impact belongs to a passage if it is no further from it than this part of the swing from the peak to the passage.
 const NEAR: f64 = 0.25;
@@ -143,7 +157,16 @@ pub(crate) fn half_cycles_and_left_out(
                 continue;
             }
             hits += usize::from(hit.is_some());
+            let lifted = |peak: &PeakRow| Some(lift(peak.phi, peak.line?, alpha));
+            let lifts = before.filter(|peak| peak.phi.abs() >= TELLING * alpha).zip(peaks.peek());
+            let lift = lifts.filter(|_| peak_after.is_some()).and_then(|(before, after)| {
+                let before = lifted(before).filter(|height| *height > 0.0)?;
+                Some(lifted(after)? / before)
+            });
+            let ends = [before.as_ref(), peaks.peek()];
             cycles.push(HalfCycle {
+                lift,
+                on_beam: ends.into_iter().flatten().any(|peak| peak.line.is_some()),
                 body: block.name.clone(),
                 t: crossing.t,
                 omega,

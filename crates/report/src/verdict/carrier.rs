@@ -247,6 +247,23 @@ impl Carrier {
         Some(past(beam, position).filter(|_| !is_on_another()))
     }
 
+    /// Past which end of the beam that carries the block, directly or by others, a point is that is lower than all of the beam by more than `reach` (m),
+    /// and the number of that beam.
+    pub(super) fn below_an_end(&self, at: [f64; 2], reach: f64, layout: &Layout, q: &[f64]) -> Option<(Way, usize)> {
+        let On::Beam(beam, position) = self.root else { return None };
+        let place = &layout.beams[beam];
+        let span = place.beam.spec().span;
+        let [x, y] = beam_origin(beam, position, layout, q);
+        let end = |x: f64| place.deflection(&place.beam.shape_clamped(x), &q[place.range.clone()]).w;
+        let is_below = at[1] < y + end(0.0).min(end(span)) - reach;
+        let way = match at[0] - x {
+            x if x < 0.0 => Way::Left,
+            x if x > span => Way::Right,
+            _ => return None,
+        };
+        is_below.then_some((way, beam))
+    }
+
     /// How high a point is: over the supports of the beam, or over the driven block, that carries the block, or over the ground, or by its y, m.
     pub(super) fn height(&self, at: [f64; 2], layout: &Layout, q: &[f64]) -> f64 {
         match (&self.root, self.ground) {

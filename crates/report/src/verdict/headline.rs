@@ -2,6 +2,7 @@
 
 use super::carrier::{Driven, driven_below};
 use super::{BodyVerdict, Fate, Going, Side};
+use crate::all_digits::{all_digits, with_all_digits};
 use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
 use teeter_integrator::State;
@@ -75,11 +76,11 @@ fn part(x: f64) -> String {
 
 /// A number with three digits, for prose.
 fn digits(x: f64) -> String {
-    teeter_scenario::readable::shortest(x, 3)
+    all_digits(x, 3)
 }
 
 fn time(t: f64) -> String {
-    format!("t = {}", with_unit(t, "s"))
+    format!("t = {}", with_all_digits(t, "s", 4))
 }
 
 /// An angle in degrees.
@@ -115,6 +116,8 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             format!("slid {}, then {back}to {} {side} its start", by(farthest), like(slid.abs(), far, "m"))
         }
     });
+    // Angles count from what carries it, in plots from the horizontal.
+    let against = of.against.as_ref().map_or_else(String::new, |what| format!(" against {what}"));
     let beside = |text: String| if largest.is_empty() { text } else { format!("{text} ({largest})") };
     let tumbled = of.tumbled.map(|turn| format!("tumbled by {}, then ", turns(turn.abs())));
     let moving = if of.is_carried { moving_base(scene, &[of]) } else { "" };
@@ -127,16 +130,20 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         degrees if degrees.ends_with('°') => format!(", turned by {degrees} in all"),
         turns => format!(", made {turns} in all"),
     });
+    let off = of
+        .fell_off
+        .as_ref()
+        .map_or_else(String::new, |(way, beam)| format!(", then fell off the {} end of `{beam}`", way.word()));
     let fate = match of.what {
         Fate::Overturned if of.t == Some(0.0) => {
-            format!("began past its critical angle and overturned to the {way}{turned}{then_rested}")
+            format!("began past its critical angle and overturned to the {way}{off}{turned}{then_rested}")
         }
         Fate::Overturned => {
             let with = of.overturned_with.as_ref().map_or_else(String::new, |lowest| match *lowest == of.body {
                 true => " as the lowest of a column".to_owned(),
                 false => format!(" as one with `{lowest}`"),
             });
-            format!("overturned{with} to the {way}{at}{turned}{then_rested}")
+            format!("overturned{with} to the {way}{at}{off}{turned}{then_rested}")
         }
         Fate::Left => {
             let beam = of.left_beam.as_ref().map_or_else(|| "its beam".to_owned(), |name| format!("`{name}`"));
@@ -183,7 +190,7 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             format!("{how} as one with `{}`", of.turns_with.as_deref().unwrap_or_default())
         }
         Fate::Rocks | Fate::Moves if of.on_its_way.is_some() => {
-            let now = of.on_its_way.map_or_else(String::new, angle);
+            let now = of.on_its_way.map_or_else(String::new, |phi| format!("{}{against}", angle(phi)));
             if let Some(way) = of.tips {
                 let past = if of.past_edge == Some(way) { PAST_EDGE } else { "" };
                 return format!("is still tipping to the {}{past}: φ {now} at {}", way.word(), time(end));
@@ -192,7 +199,8 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             format!("has not been upright yet, too short a run to tell how it rocks: φ {now} at {}{most}", time(end))
         }
         Fate::Rocks => {
-            let peak = of.last_peak.map_or_else(String::new, |peak| format!(", last peak {}{at}", angle(peak)));
+            let peak =
+                of.last_peak.map_or_else(String::new, |peak| format!(", last peak {}{against}{at}", angle(peak)));
             let drift = of.slid.is_some_and(|_| has_slid(scene, of));
             let drift = if drift { format!(", {slid}") } else { String::new() };
             beside(format!("rocks on{peak}{drift}"))
@@ -358,6 +366,20 @@ fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
         }
         tell(&alone, "overturned", "first");
         tell(&fell, "fell from its place", "first");
+    }
+    // A single one that overturned has this in its own words.
+    let overturned = of(&[Fate::Overturned]);
+    let told_alone = |block: &&BodyVerdict| {
+        !collapsed
+            && block.overturned_with.is_none()
+            && overturned.iter().filter(|of| of.overturned_with.is_none()).count() == 1
+    };
+    let mut off: Vec<&BodyVerdict> =
+        overturned.iter().copied().filter(|of| of.fell_off.is_some() && !told_alone(of)).collect();
+    while let Some((way, beam)) = off.first().and_then(|of| of.fell_off.clone()) {
+        let (same, others) = off.into_iter().partition::<Vec<_>, _>(|of| of.fell_off == Some((way, beam.clone())));
+        tell(&same, &format!("then fell off the {} end of `{beam}`", way.word()), "");
+        off = others;
     }
     let (tipped, left): (Vec<_>, Vec<_>) = of(&[Fate::Left]).into_iter().partition(|of| of.touches_beam);
     tell(&left, "left their beam", "first");

@@ -87,6 +87,13 @@ fn slip_that_counts_only_while_a_foot_presses_says_so_where_feet_differ() {
 
 #[test]
 fn a_note_on_ratios_that_are_left_out_names_the_blocks_whose_they_are() {
-    let html = &run("two-ratios", &two_blocks()).html;
-    assert!(html.contains(">ω⁺/ω⁻</th>") && html.contains("Of plate, on a beam, no ω⁺/ω⁻ is given"));
+    let text = "[time]\nend = '0.5 s'\nstep = '50 us'\n[ground]\n[material.steel]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n[beam.deck]\n\
+        material = 'steel'\nspan = '1 m'\nposition = ['0 m', '50 cm']\nwidth = '12 cm'\nthickness = '12 mm'\nelements = 10\nsupports = ['pinned', 'pinned']\n\
+        [block.post]\ndensity = '2400 kg/m^3'\nwidth = '6 cm'\nheight = '30 cm'\ndepth = '8 cm'\non = 'deck'\nat = '50 cm'\ntilt = '5 deg'\n\
+        [block.stone]\ndensity = '2400 kg/m^3'\nwidth = '6 cm'\nheight = '30 cm'\ndepth = '8 cm'\non = 'ground'\nat = '2 m'\ntilt = '5 deg'\n\
+        [contact.c]\nbetween = ['post', 'deck']\nfriction = 0.5\n[contact.d]\nbetween = ['stone', 'ground']\nfriction = 0.5\n";
+    let html = &run("two-ratios", text).html;
+    assert!(html.contains(">ω⁺/ω⁻</th>") && html.contains("Of post, on a beam, no ω⁺/ω⁻ is given"));
+    // Each has the column that tells of it.
+    assert!(html.contains(">Next peak / previous</th>") && html.contains(">Next lift / previous</th>"));
 }

@@ -265,7 +265,7 @@ fn what_tumbles_has_no_half_cycles_and_a_run_too_short_says_so() {
     let short = run("short", &scene("1 ms", "24 cm", "on = 'ground'\nat = '0 m'\ntilt = '5 deg'"));
     assert_eq!(
         short.summary.headline,
-        "`cube` has not been upright yet, too short a run to tell how it rocks: φ 5° at t = 1 ms, largest 5° at t = 0 s"
+        "`cube` has not been upright yet, too short a run to tell how it rocks: φ 5.00° at t = 1 ms, largest 5° at t = 0 s"
     );
 }
 

@@ -64,6 +64,11 @@ pub(super) fn rocking(
     let housner = |cycle: &HalfCycle| cycle.housner.filter(|_| !is_on_beam(cycle));
     let hits = cycles.iter().any(|cycle| cycle.omega.is_some());
     let (ratios, ideal) = (cycles.iter().any(|of| ratio(of).is_some()), cycles.iter().any(|of| housner(of).is_some()));
+    // On a beam that slopes the peaks to the two sides can't be compared, but the lifts can.
+    let decay = |cycle: &HalfCycle| cycle.decay().filter(|_| !cycle.on_beam);
+    let square = |cycle: &HalfCycle| cycle.housner.filter(|_| cycle.on_beam).map(|ratio| ratio * ratio);
+    let (decays, lifts) = (cycles.iter().any(|of| !of.on_beam), cycles.iter().any(|of| of.on_beam));
+    let squares = cycles.iter().any(|of| square(of).is_some());
     let mut head =
         "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"rocking-title\"><table>\n<thead><tr>"
             .to_owned();
@@ -76,10 +81,11 @@ pub(super) fn rocking(
     });
     head.push_str(if ratios { "<th scope=\"col\">ω⁺/ω⁻</th>" } else { "" });
     head.push_str(if ideal { "<th scope=\"col\">Housner</th>" } else { "" });
-    let _ = write!(
-        head,
-        "<th scope=\"col\">Next peak<br><small>{angle_unit}</small></th><th scope=\"col\">Next peak / previous</th></tr></thead>\n<tbody>\n"
-    );
+    let _ = write!(head, "<th scope=\"col\">Next peak<br><small>{angle_unit}</small></th>");
+    head.push_str(if decays { "<th scope=\"col\">Next peak / previous</th>" } else { "" });
+    head.push_str(if lifts { "<th scope=\"col\">Next lift / previous</th>" } else { "" });
+    head.push_str(if squares { "<th scope=\"col\">Housner²</th>" } else { "" });
+    head.push_str("</tr></thead>\n<tbody>\n");
     let fixed = |x: Option<f64>, digits: usize| {
         // No negative zero.
         x.map_or("–".to_owned(), |x| {
@@ -108,7 +114,9 @@ pub(super) fn rocking(
             (ratios, fixed(ratio(cycle), 4)),
             (ideal, fixed(housner(cycle), 4)),
             (true, fixed(cycle.peak_after.map(|peak| peak * per_radian), of_peaks)),
-            (true, fixed(cycle.decay(), 4)),
+            (decays, fixed(decay(cycle), 4)),
+            (lifts, fixed(cycle.lift, 4)),
+            (squares, fixed(square(cycle), 4)),
         ];
         let cells: String =
             cells.iter().filter(|(shown, _)| *shown).map(|(_, cell)| format!("<td>{cell}</td>")).collect();
@@ -138,9 +146,35 @@ pub(super) fn rocking(
     } else {
         ""
     });
-    html.push_str("Next peak / previous has a dash after a previous peak of less than a hundredth of the critical angle, and where one of the two isn’t known. \
-        Passages between two peaks below a thousandth of the critical angle are left out. ");
-    if hits && cycles.iter().any(is_on_beam) {
+    let on_beams = cycles.iter().any(is_on_beam);
+    html.push_str(if lifts {
+        "Of a block on a beam, φ counts from the line between its feet on the bent beam, about which it rocks. As a deck that slopes lets it swing farther \
+         downhill than uphill with the same energy, the lift tells the decay: how high its mass centre is at a peak over where it is flat on that line. "
+    } else {
+        ""
+    });
+    html.push_str(if squares {
+        "Housner²: what an impact on rigid ground would leave of the lift, (1\u{a0}−\u{a0}(3/2)\u{a0}sin²α)². "
+    } else {
+        ""
+    });
+    html.push_str(if on_blocks || lifts { "Plots have φ from the horizontal. " } else { "" });
+    html.push_str(match (decays, lifts) {
+        (_, false) => "Next peak / previous has a dash",
+        (false, true) => "Next lift / previous has a dash",
+        (true, true) => "Next peak / previous and next lift / previous have a dash",
+    });
+    html.push_str(
+        " after a previous peak of less than a hundredth of the critical angle, and where one of the two isn’t known. ",
+    );
+    html.push_str(match (decays, lifts) {
+        (_, false) => "Passages between two peaks below a thousandth of the critical angle are left out. ",
+        (false, true) => "Swings of less than a hundredth of the critical angle don’t count. ",
+        (true, true) => {
+            "Passages between two peaks below a thousandth of the critical angle are left out, on a beam swings of less than a hundredth. "
+        }
+    });
+    if hits && on_beams {
         // A ratio beside it is that of another block.
         let mut bodies: Vec<&str> =
             cycles.iter().filter(|cycle| is_on_beam(cycle)).map(|of| of.body.as_str()).collect();
@@ -151,13 +185,14 @@ pub(super) fn rocking(
         } else {
             "On a beam no".to_owned()
         };
+        let what = if lifts { "lift" } else { "peaks" };
         let _ = write!(
             html,
             "{whose} ω⁺/ω⁻ is given: the beam springs back, so that what is one impact on rigid ground goes on over several bounces, and the velocities \
-         before and after one of them don’t tell what is lost. The decay from peak to peak does, but for loads that act meanwhile."
+         before and after one of them don’t tell what is lost. The decay of the {what} does, but for loads that act meanwhile and what a beam that vibrates gives back."
         );
     }
-    html.push_str(if on_blocks || cycles.iter().any(is_on_beam) {
+    html.push_str(if on_blocks || on_beams {
         ""
     } else if hits && !scenery.driven.is_empty() {
         "A base that gives way spreads the loss over the half cycle: the ratio is then nearer to 1."

@@ -1,8 +1,9 @@
 //! The numbers of the summary: those that one wants to know first as tiles, all others as a table.
 
 use super::{scientific, with_code, with_prefix_of};
+use crate::all_digits::{all_digits, with_all_digits};
+use crate::page::content;
 use crate::page::panels::{Measure, Units};
-use crate::page::{content, rounded};
 use crate::verdict::{BodyVerdict, Fate, ROCKED};
 use crate::{Summary, shortest, with_digits};
 use serde_json::Value;
@@ -116,9 +117,9 @@ fn lost(lost: f64, summary: &Summary, units: &Units) -> String {
     let (prefix, factor) = units.unit(Measure::Energy, lost.abs());
     // A number that would be long there, or begin with zeros, is in its own.
     if !(0.1..1e4).contains(&(factor * lost.abs())) {
-        return with_digits(lost, "J", 3).replace('-', "\u{2212}");
+        return with_all_digits(lost, "J", 3).replace('-', "\u{2212}");
     }
-    format!("{} {prefix}J", shortest(factor * lost, 3).replace('-', "\u{2212}"))
+    format!("{} {prefix}J", all_digits(factor * lost, 3).replace('-', "\u{2212}"))
 }
 
 /// The largest φ/α of a scene, as the sentence at its head counts it.
@@ -158,7 +159,7 @@ impl Largest {
 /// In the units of the plots.
 pub(super) fn tiles(values: &Numbers, summary: &Summary, units: &Units) -> String {
     let mut html = String::new();
-    let seconds = |t: Option<f64>| t.map(|t| as_told(t, "s"));
+    let seconds = |t: Option<f64>| t.map(|t| with_all_digits(t, "s", 4).replace('-', "\u{2212}"));
     for (path, label, shown) in sliding(summary) {
         let _ = writeln!(
             html,
@@ -297,5 +298,6 @@ fn unit_of(path: &str) -> Option<&'static str> {
 
 /// φ/α for people; nothing of less than a hundredth: such a block doesn't rock, in a word.
 fn share_of_critical_angle(share: f64) -> Option<String> {
-    (share >= ROCKED).then(|| rounded(share, 3).to_string())
+    // What stays below it isn't rounded up to it, as in the headline.
+    (share >= ROCKED).then(|| all_digits(if share < 1.0 { share.min(0.999) } else { share }, 3))
 }

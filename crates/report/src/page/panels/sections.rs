@@ -81,7 +81,7 @@ impl Panels {
             for (column, label, number, _) in drawn {
                 let mean = match kind {
                     Kind::Stress => filter
-                        .largest_about(&self.curves, column)
+                        .through_the_largest(&self.curves, column)
                         .map(|most| most.into_iter().map(|stress| factor * stress).collect()),
                     _ => filter.ringing(&self.curves, column),
                 };
@@ -90,7 +90,11 @@ impl Panels {
                 lines.push(Line { is_raw, ..Line::of(&self.curves, column, factor, name, number) });
                 over.extend(mean.map(|y| Line { label, number, y, is_raw: false, of: None }));
             }
-            let strong = if kind == Kind::Stress { "largest within" } else { "without vibrations of periods below" };
+            let strong = if kind == Kind::Stress {
+                "through the largest of every"
+            } else {
+                "without vibrations of periods below"
+            };
             let pale = (!over.is_empty()).then(|| format!("pale: all steps; strong: {strong} {}", filter.told()));
             let peaks = (kind != Kind::AxialForce).then(|| after_impacts(recorder)).flatten();
             let note = pale.into_iter().chain(peaks.map(str::to_owned)).collect::<Vec<_>>().join("; ");

@@ -90,7 +90,9 @@ impl Units {
             // Small ones have a unit of their own then: the large ones are what the scene is about.
             return if most * for_least.1 < LARGE_LENGTH { for_least } else { alone };
         }
-        if most * for_least.1 < LARGE { for_least } else { self.alone(measure, (most * least).sqrt()) }
+        // What is between both is still one where it makes no long numbers of the large ones.
+        let between = self.alone(measure, (most * least).sqrt());
+        [for_least, between].into_iter().find(|unit| most * unit.1 < LARGE).unwrap_or(alone)
     }
 
     fn alone(&self, measure: Measure, size: f64) -> Unit {
@@ -245,6 +247,8 @@ mod tests {
         assert_eq!(of(&[(Deflection, 6e-7), (Deflection, 2.4e-3)]), ["µm", "mm"], "not 2400 µm");
         assert_eq!(of(&[(Deflection, 3e-5), (Deflection, 2.4e-3)]), ["mm", "mm"]);
         assert_eq!(of(&[(Position, 2e-3), (Position, 0.45), (Deflection, 2e-3)]), ["cm", "cm", "mm"]);
+        assert_eq!(of(&[(Energy, 13.6), (Energy, 5e-3)]), ["", "m"], "not 13600 mJ");
+        assert_eq!(of(&[(Energy, 13.6), (Energy, 0.05)]), ["", ""]);
         // What was not among those that chose.
         let units = Units::of(LengthUnit::Metre, &[(Force, 5e3), (Force, 300.0)]);
         assert_eq!([2e3, 200.0, 0.1].map(|size| units.unit(Force, size).0), ["k", "k", "m"]);
