@@ -116,20 +116,9 @@ fn a_run_writes_its_files_with_the_columns_of_the_contract() {
     let peaks: Vec<f64> = summary["peaks"].as_array().unwrap().iter().map(|p| p["phi"].as_f64().unwrap()).collect();
     let crossings = summary["crossings"].as_array().unwrap();
     assert_eq!((peaks.len(), crossings.len()), (3, 3), "the release is the first peak, the last is unfinished");
-    let phi = |row: &[String]| row[3].parse::<f64>().unwrap();
-    assert!((phi(&rows[0]) - 5_f64.to_radians()).abs() < 1e-15);
-    // From the line between the feet: under the foot on which it is released the table gives way by 0.11°.
-    assert!((peaks[0].to_degrees() - 4.89).abs() < 0.01, "{}", peaks[0].to_degrees());
-    assert!((crossings[0]["t"].as_f64().unwrap() - 0.1063).abs() < 3e-3, "{crossings:?}");
-    // When φ itself is 0, from the independent implementation.
-    let folder = self::folder("every-step");
-    let every = ["--set", "time.scheme=moreau-jean", "--set", "output.every=100us", "--no-report"];
-    assert!(run(&folder, "free-rocking-on-beam", &every).status.success());
-    let rows = table(&folder.join("out/trajectory.csv")).1;
-    let pair = rows.windows(2).find(|pair| phi(&pair[0]) > 0.0 && phi(&pair[1]) <= 0.0).unwrap();
-    let [(t0, a), (t1, b)] = [&pair[0], &pair[1]].map(|row| (row[0].parse::<f64>().unwrap(), phi(row)));
-    let crossing = t0 + (t1 - t0) * a / (a - b);
-    assert!((crossing - 0.10629444291395758).abs() < 1e-11, "{crossing}");
+    assert!((peaks[0] - 5_f64.to_radians()).abs() < 1e-15);
+    // From the independent implementation.
+    assert!((crossings[0]["t"].as_f64().unwrap() - 0.10629444291395758).abs() < 1e-11);
 }
 
 #[test]

@@ -59,9 +59,9 @@ pub struct Record {
     pub reclosure_count: u64,
     /// Up to when the motion was found to be as accurate as was asked for, s.
     pub horizon: Option<f64>,
-    /// Zero crossings and peaks, by block.
+    /// Zero crossings and peaks, by block; on a beam from its undeformed axis.
     pub rocking: Vec<RockingMonitor>,
-    /// How the lines between the feet of blocks on beams sloped at their peaks, by block.
+    /// The same on a beam from the line between the block's feet.
     #[serde(default)]
     pub feet_lines: Vec<FeetLine>,
     /// What beams bore, of those that are asked.
@@ -487,11 +487,12 @@ impl Observer<2> for Recorder<'_> {
         let started = |(((tilt, line), place), rocks): (((f64, Option<f64>), &BlockPlace), f64)| {
             // A beam that vibrates lifts the feet of what stands on it by turns, which is no rocking.
             let least = if line.is_some() { place.still.max(rocks) } else { place.still };
-            (RockingMonitor::new(state.t, tilt).with_least(least), FeetLine::new(line))
+            FeetLine::new(RockingMonitor::new(state.t, tilt).with_least(least), line)
         };
         let started =
             self.kept.record.fates.tilts().zip(&self.layout.blocks).zip(self.fate_watch.least_swings()).map(started);
-        (self.kept.record.rocking, self.kept.record.feet_lines) = started.unzip();
+        self.kept.record.feet_lines = started.collect();
+        self.kept.record.rocking = self.layout.rocking_monitors(state.t, &state.q);
         self.places.look(self.layout, state, &mut self.kept.record.deflections);
         let (record, values) = (&mut self.kept.record, &mut self.kept.section_values);
         self.sections.start(self.layout, state, &mut record.beams, values);
@@ -521,9 +522,11 @@ impl Observer<2> for Recorder<'_> {
         self.places.look(self.layout, state, &mut self.kept.record.deflections);
         self.kept.record.fates.observe(&self.fate_watch, self.layout, step, state);
         let Record { rocking, feet_lines, fates, .. } = &mut self.kept.record;
-        for ((monitor, line), (tilt, slope)) in rocking.iter_mut().zip(feet_lines).zip(fates.tilts()) {
-            monitor.enter(state.t, tilt);
-            line.enter(monitor, state.t, slope);
+        for (block, monitor) in rocking.iter_mut().enumerate() {
+            monitor.enter(state.t, self.layout.tilt(block, &state.q));
+        }
+        for (line, (tilt, slope)) in feet_lines.iter_mut().zip(fates.tilts()) {
+            line.enter(state.t, tilt, slope);
         }
         if self.kept.schedule.takes(state.step, state.t) {
             self.write_rows(model, state)?;

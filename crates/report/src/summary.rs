@@ -95,8 +95,11 @@ pub struct Summary {
     pub reclosure_count: u64,
     /// Steps in which the scheme didn't locate all impacts and ends of slides, or events: the rest of such a step is taken as by a fixed step.
     pub unlocated_steps: u64,
-    /// Zero crossings of the angles against what carries the blocks, on a beam the line between a block's feet.
+    /// Zero crossings of the angles against what carries the blocks, on a beam against its undeformed axis.
     pub crossings: Vec<CrossingRow>,
+    /// Crossings and peaks from the lines between the feet of blocks on beams.
+    #[serde(skip)]
+    pub(crate) passages: Passages,
     /// All crossings, counted; only where the list holds no more than the first of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossing_count: Option<u64>,
@@ -208,9 +211,39 @@ pub struct PeakRow {
     pub body: String,
     /// The angle, rad.
     pub phi: f64,
-    /// The slope of the line between the block's feet on its beam then, rad, from which the angle counts; none on anything else.
+    /// Of a peak from the line between the block's feet on its beam: the line's slope then, rad.
     #[serde(skip)]
     pub(crate) line: Option<f64>,
+}
+
+/// Crossings and peaks of all blocks, in order of time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Passages {
+    pub(crate) crossings: Vec<CrossingRow>,
+    pub(crate) peaks: Vec<PeakRow>,
+}
+
+impl Passages {
+    /// Those that the monitors of the blocks have found; with each comes the slopes of the line from which its peaks count.
+    fn of<'a>(layout: &Layout, monitors: impl Iterator<Item = (&'a RockingMonitor, Vec<Option<f64>>)>) -> Self {
+        let mut all = Self::default();
+        for (block, (monitor, lines)) in layout.blocks.iter().zip(monitors) {
+            let body = || block.name.clone();
+            all.crossings.extend(monitor.crossings().iter().map(|of| CrossingRow { t: of.t, body: body() }));
+            // With the one that the headline has, which no crossing has followed yet; not behind a list that is full.
+            let turned = monitor.turned().filter(|_| monitor.crossings().len() as u64 == monitor.count());
+            let row = |(k, of): (usize, &Peak)| PeakRow {
+                t: of.t,
+                body: body(),
+                phi: of.phi,
+                line: lines.get(k).copied().flatten(),
+            };
+            all.peaks.extend(monitor.peaks().iter().chain(&turned).enumerate().map(row));
+        }
+        all.crossings.sort_by(|a, b| a.t.total_cmp(&b.t));
+        all.peaks.sort_by(|a, b| a.t.total_cmp(&b.t));
+        all
+    }
 }
 
 /// What a beam bore, over all steps.
@@ -399,27 +432,11 @@ impl Summary {
     ) -> Self {
         let wanted = |key: &str| keys.contains(&key);
         let (ledger, tally) = (&state.ledger, &state.tally);
-        let monitored = || layout.blocks.iter().zip(&record.rocking);
-        let mut crossings: Vec<CrossingRow> = monitored()
-            .flat_map(|(block, m)| m.crossings().iter().map(|c| CrossingRow { t: c.t, body: block.name.clone() }))
-            .collect();
         let counted = record.rocking.iter().map(RockingMonitor::count).sum::<u64>();
-        crossings.sort_by(|a, b| a.t.total_cmp(&b.t));
-        // A record of crossings alone has none.
-        let lines = record.feet_lines.iter().map(|of| of.slopes().collect()).chain(std::iter::repeat_with(Vec::new));
-        let mut peaks: Vec<PeakRow> = monitored()
-            .zip(lines)
-            .flat_map(|((block, m), lines)| {
-                // With the one that the headline has, which no crossing has followed yet; not behind a list that is full.
-                let turned = m.turned().filter(|_| m.crossings().len() as u64 == m.count());
-                let row = |(k, p): (usize, &Peak)| {
-                    let line = lines.get(k).copied().flatten();
-                    PeakRow { t: p.t, body: block.name.clone(), phi: p.phi, line }
-                };
-                m.peaks().iter().chain(&turned).enumerate().map(row).collect::<Vec<_>>()
-            })
-            .collect();
-        peaks.sort_by(|a, b| a.t.total_cmp(&b.t));
+        let Passages { crossings, peaks } =
+            Passages::of(layout, record.rocking.iter().map(|monitor| (monitor, Vec::new())));
+        let lines = record.feet_lines.iter().map(|line| (line.monitor(), line.slopes().collect()));
+        let passages = Passages::of(layout, lines);
         let gains = &ledger.positive_contact_work;
         let verdict = record.fates.verdict(scene, layout, state, &record.rocking);
         let mut deflections = record.deflections.clone();
@@ -487,6 +504,7 @@ impl Summary {
             unlocated_steps: state.tally.unlocated_steps,
             crossing_count: (counted > crossings.len() as u64).then_some(counted),
             crossings,
+            passages,
             peaks,
             beams,
             deflections,

@@ -445,9 +445,6 @@ impl Watched {
 
     /// Against what that is, in words; none where it is the horizontal.
     fn against(&self, layout: &Layout, number: usize, q: &[f64]) -> Option<String> {
-        if let Some(beam) = self.carrier.beam().filter(|_| self.feet.is_some()) {
-            return Some(format!("`{}`", layout.beams[beam].name));
-        }
         let moving = match layout.blocks[number].tilt_reference {
             TiltReference::Moving(slope) | TiltReference::MovingIncline(slope, _) => Some(slope),
             _ => None,
@@ -825,7 +822,7 @@ impl Seen {
             Placement::Free { angle, .. } => self.began.map(|_| self.angle - angle),
             Placement::On { .. } => None,
         };
-        let (tilt, _) = watched.tilt(layout, number, state);
+        let tilt = layout.tilt(number, &state.q);
         let turns_on = |monitor: &&RockingMonitor| {
             let way = Way::of(tilt);
             way.sign() * watched.velocity(layout, number, state)[2] > 0.0 && monitor.extreme().phi.abs() <= tilt.abs()
@@ -864,7 +861,7 @@ impl Seen {
             fell_at: fell,
             overturned_at: overturned.map(|(t, _)| t),
             rests_from: rests,
-            leans_at: leans.then_some(layout.tilt(number, &state.q)),
+            leans_at: leans.then_some(tilt),
             lies_on,
             farthest: slid.and_then(|slid| self.slides.farthest(slid, least)),
             to_and_fro: to_and_fro.then(|| self.slides.reached()),

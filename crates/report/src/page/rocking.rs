@@ -117,8 +117,8 @@ pub(crate) fn half_cycles_and_left_out(
         let stands = |t: f64| (stands.0..=stands.1).contains(&t);
         let stands_alone = recorder.scenery.stands_alone(number);
         let (own, mut hits) = (cycles.len(), 0);
-        let mut peaks = summary.peaks.iter().filter(|peak| peak.body == block.name).peekable();
-        for crossing in summary.crossings.iter().filter(|crossing| crossing.body == block.name) {
+        let mut peaks = summary.passages.peaks.iter().filter(|peak| peak.body == block.name).peekable();
+        for crossing in summary.passages.crossings.iter().filter(|crossing| crossing.body == block.name) {
             let before = peaks.next();
             let size = |peak: Option<&&PeakRow>| peak.map_or(0.0, |peak| peak.phi.abs());
             if !stands(crossing.t) {
@@ -151,6 +151,8 @@ pub(crate) fn half_cycles_and_left_out(
             };
             let peak_after = match peaks.peek() {
                 Some(peak) => Some(peak.phi).filter(|_| stands(peak.t)),
+                // Against another line.
+                None if before.is_some_and(|peak| peak.line.is_some()) => None,
                 None => unfinished(),
             };
             if hit.is_none() && !is_swing(before.map(|peak| peak.phi), peak_after, alpha) {

@@ -343,9 +343,12 @@ fn rocking_on_a_sloping_deck_counts_from_the_line_between_the_feet() {
         between = ['post', 'deck']\nfriction = 0.5\n";
     let rocks = run("post-on-a-sloping-deck", text);
     // The deck's own weight, 110.9 N/m, slopes it there by w L³/24EI (1 − 6ξ² + 4ξ³) = 0.513°, that of the post, 33.9 N, by P a b (b − a)/3EI L = 0.064°.
-    let release = rocks.summary.peaks[0].phi.to_degrees();
-    assert!((release - 5.577).abs() < 0.03, "{release}");
     let cycles = half_cycles(&rocks.page, &rocks.summary);
+    let release = cycles[0].peak_before.unwrap().to_degrees();
+    assert!((release - 5.577).abs() < 0.03, "{release}");
+    // The summary's peaks are those of the trajectory, from the deck's undeformed axis.
+    let peak = rocks.summary.peaks[0].phi.to_degrees();
+    assert!((peak - 5.0).abs() < 1e-9, "{peak}");
     let lifts: Vec<f64> = cycles.iter().filter_map(|of| of.lift).collect();
     let housner = cycles[0].housner.unwrap().powi(2);
     assert!(lifts.len() >= 3 && (lifts[0] - housner).abs() < 0.02, "{lifts:?} against {housner}");
@@ -353,7 +356,6 @@ fn rocking_on_a_sloping_deck_counts_from_the_line_between_the_feet() {
     let peaks = cycles.iter().filter_map(teeter_report::HalfCycle::decay);
     assert!(peaks.fold(0.0, f64::max) > 1.0, "downhill it swings farther");
     assert!(rocks.html.contains("about which it rocks") && rocks.html.contains("Plots have φ from the horizontal"));
-    assert!(rocks.summary.headline.contains("° against `deck` at t = "), "{}", rocks.summary.headline);
 }
 
 /// The angle of the plots is from the horizontal: what a peak counts from instead is said, unless that is level.
