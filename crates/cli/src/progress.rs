@@ -193,7 +193,7 @@ mod tests {
 
     /// Times at which cases end on `threads` threads, each with what `cost` takes for it.
     fn ends(cases: u64, threads: u64, cost: &dyn Fn(u64) -> f64) -> Vec<f64> {
-        let mut free = vec![0.0; threads as usize];
+        let mut free = vec![0.0_f64; threads as usize];
         let mut ends: Vec<f64> = Shard::ALL
             .spread(cases)
             .map(|case| {
