@@ -473,8 +473,9 @@ const FIT_HELP: &str = "Examples:
   teeter fit rocking.toml camera.csv --vary beam.table.damping_ratio.ratio=0.001..0.1
   teeter fit rocking.toml camera.csv --vary contact.feet.friction=0.1..1 --vary beam.table.thickness=\"1 mm..3 mm\"
 
-The time shift and the zero of the measured angle are fitted too, unless given. docs/fit.md describes the method and the
-results.";
+The time shift and the zero of the measured angle are fitted too, unless given. Rows count up to where the motion is
+predictable; a warning says which shorter time.step extends that. A rocking block hardly shows the damping of its beam: let it
+stand on the beam, released where the beam is undeformed. docs/fit.md has the commands, the method and the results.";
 
 /// clap would put a sweep file into the line of `--merge`.
 const SWEEP_USAGE: &str = "teeter sweep [OPTIONS] <SWEEP.toml>

@@ -123,13 +123,27 @@ impl CaseBar {
         if !self.console.is_watched() {
             return;
         }
-        let elapsed = self.begin.elapsed();
         let (done, all) = (self.bar.position() - self.before, self.bar.length().unwrap_or(0) - self.before);
-        // The mean over all cases so far: neighbouring cases cost alike, so a mean over the last ones
-        // would swing with the axes.
-        let left = elapsed.as_secs_f64() * (all.saturating_sub(done)) as f64 / done.max(1) as f64;
-        self.bar.set_message(format!("{} left", indicatif::HumanDuration(Duration::from_secs_f64(left))));
+        let left = time_left(self.begin.elapsed().as_secs_f64(), done, all);
+        self.bar.set_message(format!("{} left", in_two_units(left)));
         appear(self.console, self.begin, &self.bar);
+    }
+}
+
+/// How long the rest of `all` cases takes, s, where `done` ones took `elapsed`: they come from all over the study.
+fn time_left(elapsed: f64, done: u64, all: u64) -> f64 {
+    elapsed * all.saturating_sub(done) as f64 / done.max(1) as f64
+}
+
+/// A time in its unit and the next smaller one: a single unit would round 95 s to two minutes.
+fn in_two_units(seconds: f64) -> String {
+    const UNITS: [(u64, &str, u64, &str); 3] = [(86_400, "d", 3600, "h"), (3600, "h", 60, "min"), (60, "min", 1, "s")];
+    let seconds = seconds.round() as u64;
+    match UNITS.into_iter().find(|(unit, ..)| seconds >= *unit) {
+        Some((unit, name, smaller, its_name)) => {
+            format!("{} {name} {} {its_name}", seconds / unit, seconds % unit / smaller)
+        }
+        None => format!("{seconds} s"),
     }
 }
 
@@ -169,5 +183,59 @@ impl PhaseBar {
 impl Drop for PhaseBar {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{in_two_units, time_left};
+    use teeter_study::sweep::Shard;
+
+    /// Times at which cases end on `threads` threads, each with what `cost` takes for it.
+    fn ends(cases: u64, threads: u64, cost: &dyn Fn(u64) -> f64) -> Vec<f64> {
+        let mut free = vec![0.0_f64; threads as usize];
+        let mut ends: Vec<f64> = Shard::ALL
+            .spread(cases)
+            .map(|case| {
+                let first = free.iter_mut().min_by(|a, b| a.total_cmp(b)).unwrap();
+                *first += cost(case);
+                *first
+            })
+            .collect();
+        ends.sort_by(f64::total_cmp);
+        ends
+    }
+
+    #[test]
+    fn the_time_left_is_right_to_a_fifth_from_a_tenth_of_the_work_on() {
+        // Costs that are even, that change threefold along the first axis or the last one, of ten values, and that are four times as large
+        // in one half.
+        let share = |case: u64, of: u64| case as f64 / of as f64;
+        for cases in [100, 360, 1000, 5000] {
+            let costs: [(&str, &dyn Fn(u64) -> f64); 5] = [
+                ("even", &|_| 1.0),
+                ("first axis", &|case| 1.0 + 2.0 * share(case, cases)),
+                ("first axis, falling", &|case| 3.0 - 2.0 * share(case, cases)),
+                ("last axis", &|case| 1.0 + 2.0 * share(case % 10, 10)),
+                ("halves", &|case| if 2 * case < cases { 1.0 } else { 4.0 }),
+            ];
+            for (name, cost) in costs {
+                // A case that runs is half done, so that a tenth of the cases must be many more than there are threads.
+                for threads in [1, 2, 8].into_iter().filter(|threads| cases >= 50 * threads) {
+                    let ends = ends(cases, threads, cost);
+                    let all = ends[ends.len() - 1];
+                    for (done, end) in (1..).zip(&ends).filter(|(_, end)| (0.1..0.9).contains(&(**end / all))) {
+                        let off = time_left(*end, done, cases) / (all - end) - 1.0;
+                        assert!(off.abs() < 0.2, "{cases} cases, {name}, {threads} threads, {done} done: {off:.2}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn times_are_told_to_a_few_per_cent() {
+        let told = [0.4, 59.4, 95.0, 3599.0, 7500.0, 100_000.0].map(in_two_units);
+        assert_eq!(told, ["0 s", "59 s", "1 min 35 s", "59 min 59 s", "2 h 5 min", "1 d 3 h"]);
     }
 }

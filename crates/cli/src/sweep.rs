@@ -194,7 +194,7 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
     let cancel = interrupt::listen();
     let shard = study.identity.shard();
     let (before, total) = (journal.done(), shard.count(study.sweep.cases()));
-    let missing = journal.missing(shard.cases(study.sweep.cases()));
+    let missing = journal.missing(shard.spread(study.sweep.cases()));
     if journal.rejected() > 0 {
         let (lines, are) = if journal.rejected() == 1 { ("line", "was") } else { ("lines", "were") };
         console.note(&format!(

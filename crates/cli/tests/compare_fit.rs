@@ -226,6 +226,39 @@ fn values_that_fit_as_well_are_in_the_interval() {
     if !estimate["as_good"].is_null() {
         assert!(told.contains("fit about as well as"), "{told}");
     }
+    // The step is what ends the rows, at half a second: a step with which more of them count is told, and what half the step
+    // would change, where that is more than the interval.
+    let of_step = estimate["with_half_step"].as_f64().unwrap().abs();
+    assert!(of_step > 0.0, "{estimate}");
+    assert_eq!(told.contains("half the step would change"), of_step > 0.5 * (high - low), "{told}");
+    let finer = &found["finer_step"];
+    let [step, horizon] = ["step", "horizon"].map(|name| finer[name].as_f64().unwrap());
+    assert!(step < 0.6e-4 && horizon > 1.2 * found["horizon"].as_f64().unwrap(), "{finer}");
+    assert!(told.contains(&format!("fit again with --set time.step=\"{} us\"", 1e6 * step)), "{told}");
+}
+
+/// A block that stands on its beam and is let go where this is undeformed swings with it without impacts: how fast that
+/// decays is the damping, which rocking hides.
+#[test]
+fn a_block_that_swings_with_its_beam_tells_the_damping_within_two_percent() {
+    let folder = folder("swing");
+    done(&folder, &["new", "scene.toml"]);
+    let swing = "--set block.rocker.tilt=0deg --set beam.table.start=undeformed --set time.end=2s";
+    let swing: Vec<&str> = swing.split(' ').collect();
+    let truth = ["--set", "beam.table.damping_ratio.ratio=0.02", "--out", "truth", "--quiet"];
+    done(&folder, &[&["run", "scene.toml"], &swing[..], &truth].concat());
+    let mut noise = Noise(7);
+    let mut text = "t,y [mm]\n".to_owned();
+    for [t, _, y, _] in frames(&folder.join("truth"), "rocker") {
+        writeln!(text, "{:.6},{:.4}", t + 2.0, 1e3 * y + 0.05 * noise.next()).unwrap();
+    }
+    std::fs::write(folder.join("camera.csv"), text).unwrap();
+    let vary = ["--vary", "beam.table.damping_ratio.ratio=0.001..0.1", "--quiet", "--out", "fitted"];
+    done(&folder, &[&["fit", "scene.toml", "camera.csv"], &swing[..], &vary].concat());
+    let estimate = &read(&folder.join("fitted/fit.json"))["estimates"][0];
+    let [low, high] = [0, 1].map(|end| estimate["interval_95"][end].as_f64().unwrap());
+    let value = estimate["value"].as_f64().unwrap();
+    assert!((value / 0.02 - 1.0).abs() < 0.02 && low < 0.02 && 0.02 < high && high - low < 0.02 * 0.04, "{estimate}");
 }
 
 #[test]

@@ -16,7 +16,7 @@ pub(crate) fn warning(record: &RecordScene, end: f64, document: &Document) -> Op
         let rule = "the record is 0 throughout, and has no effect";
         return Some(document.error(&path, rule, "check the file, from, to and scale").as_warning());
     }
-    if let Some([_, strong]) = record.record.husid_times([0.05, 0.95]).ok().filter(|[_, strong]| end < *strong) {
+    if let Some(strong) = record.strong_until.filter(|strong| end < *strong) {
         let rule = format!("the run ends at {end} s, before 95 % of the record's Arias intensity, at {strong:.2} s");
         let remedy = "extend the run (time.end), or choose a part by from and to";
         return Some(document.error(&path, rule, remedy).as_warning());

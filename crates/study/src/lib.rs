@@ -42,7 +42,7 @@ pub mod write;
 pub use accuracy::{ChosenStep, ErrorBasis, NoStep, step_for};
 pub use axes::{Axes, SettingAxis};
 pub use comparison::ReferenceComparison;
-pub use divergence::{DIVERGED, Divergence, divergence};
+pub use divergence::{DIVERGED, Divergence, FinerStep, divergence};
 pub use errors::{ErrorNorms, Errors, Quantity};
 pub use first_steps::FirstSteps;
 pub use horizon::FirstImpact;

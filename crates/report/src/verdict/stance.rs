@@ -5,7 +5,7 @@
 //! points of no return, between two of them there is one minimum: a side on which it lies.
 
 use serde::{Deserialize, Serialize};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::{Arc, Mutex, PoisonError};
 use teeter_beam::Beam;
 use teeter_scenario::scene::BlockScene;
@@ -65,6 +65,18 @@ struct Corner {
     arm: f64,
     direction: f64,
     rounding: f64,
+}
+
+impl Corner {
+    /// How far down it reaches from the mass centre where this direction of the block points down, m.
+    fn down(&self, direction: f64) -> f64 {
+        self.arm * (direction - self.direction).cos() + self.rounding
+    }
+}
+
+/// How far down the lowest of some corners reaches.
+fn down(corners: &[Corner], direction: f64) -> f64 {
+    corners.iter().map(|corner| corner.down(direction)).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// A corner that is no higher than this part of the block's size counts as a summit.
@@ -174,8 +186,7 @@ impl Outline {
 
     /// How far down the block reaches from its mass centre where this direction of it points down, m.
     fn down(&self, direction: f64) -> f64 {
-        let reach = |corner: &Corner| corner.arm * (direction - corner.direction).cos() + corner.rounding;
-        self.corners.iter().map(reach).fold(f64::NEG_INFINITY, f64::max)
+        down(&self.corners, direction)
     }
 
     /// The corners at the ends of the side that is lowest where this direction (rad) of the block points down, left and right as seen then; `None`
@@ -233,7 +244,24 @@ impl Outline {
 
     /// Where the mass centre is lowest between two tops that are neighbours, rad.
     fn lowest(&self, from: f64, to: f64) -> f64 {
-        lowest(|angle| self.down(self.gamma - angle), from, to)
+        let near = self.reaching_down(self.gamma - from.max(to), self.gamma - from.min(to));
+        lowest(|angle| down(&near, self.gamma - angle), from, to)
+    }
+
+    /// The corners that are lowest somewhere between two directions (rad, in ascending order), among a few others: the search for a side looks at
+    /// them some hundred times.
+    fn reaching_down(&self, from: f64, to: f64) -> Vec<Corner> {
+        // Between the directions lies one that differs from `direction` by whole turns.
+        let contains = |direction: f64| (direction - from).rem_euclid(TAU) <= to - from;
+        let bounds = |corner: &Corner| {
+            let [a, b] = [from, to].map(|direction| corner.down(direction));
+            let most = if contains(corner.direction) { corner.arm + corner.rounding } else { a.max(b) };
+            let least = if contains(corner.direction + PI) { corner.rounding - corner.arm } else { a.min(b) };
+            (least, most)
+        };
+        let all: Vec<(f64, f64)> = self.corners.iter().map(bounds).collect();
+        let reached = all.iter().map(|(least, _)| *least).fold(f64::NEG_INFINITY, f64::max) - ROUNDING * self.size;
+        self.corners.iter().zip(all).filter(|(_, (_, most))| *most >= reached).map(|(corner, _)| *corner).collect()
     }
 }
 
@@ -306,6 +334,28 @@ mod tests {
     }
 
     const DOWN: [f64; 2] = [0.0, -9.81];
+
+    #[test]
+    fn corners_that_are_left_out_of_a_search_are_nowhere_lowest() {
+        // Of a rectangle the two above, of a polygon of many sides most.
+        let corner = |x: f64, y: f64, rounding| Corner { arm: x.hypot(y), direction: y.atan2(x), rounding };
+        let rectangle = [(-1.0, -3.0), (1.0, -3.0), (1.0, 3.0), (-1.0, 3.0)].map(|(x, y)| corner(x, y, 0.0));
+        let many = (0..12)
+            .map(|k| corner((f64::from(k) * 0.5).cos(), 1.3 * (f64::from(k) * 0.5).sin(), 0.01 * f64::from(k % 3)));
+        for (corners, most) in [(rectangle.to_vec(), 2), (many.collect(), 5)] {
+            let outline = Outline { corners, size: 3.2, gamma: -FRAC_PI_2, shared: None };
+            for turn in 0..40 {
+                let from = 0.3 * f64::from(turn) - 6.0;
+                let near = outline.reaching_down(from, from + 0.4);
+                for part in 0..=200 {
+                    let at = from + 0.002 * f64::from(part);
+                    assert_eq!(down(&near, at), outline.down(at), "{from} {at}");
+                }
+            }
+            let near = outline.reaching_down(-FRAC_PI_2 - 0.2, -FRAC_PI_2 + 0.2);
+            assert!(near.len() <= most, "{near:?}");
+        }
+    }
 
     #[test]
     fn a_rectangle_stands_between_plus_and_minus_alpha_and_then_lies_on_its_side() {

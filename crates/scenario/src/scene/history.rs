@@ -157,6 +157,8 @@ pub struct RecordScene {
     /// The velocity with which it ends, and the largest one, m/s.
     pub(crate) last_velocity: f64,
     pub(crate) largest_velocity: f64,
+    /// When 95 % of its Arias intensity are over, s; none for one that is 0 throughout. Every scene of a study asks for it.
+    pub(crate) strong_until: Option<f64>,
     /// Its accelerations over time, m/s²: linear between the values, and falling to 0 within a step
     /// after the last one.
     table: Arc<Table>,
@@ -177,7 +179,9 @@ impl RecordScene {
         let table = Arc::new(Table::new(times, values)?);
         let [last_velocity, _] = record.at_the_end();
         let largest_velocity = record.velocity_peak().size;
-        Ok(Self { path: path.to_owned(), file: file.to_owned(), record, last_velocity, largest_velocity, table })
+        let strong_until = record.husid_times([0.05, 0.95]).ok().map(|[_, strong]| strong);
+        let (path, file) = (path.to_owned(), file.to_owned());
+        Ok(Self { path, file, record, last_velocity, largest_velocity, strong_until, table })
     }
 
     /// Its spectral acceleration at a natural period (s), for 5 % damping, m/s²; `None` if it can't be

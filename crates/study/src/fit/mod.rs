@@ -13,9 +13,10 @@ pub use keys::FitKey;
 pub use write::{FILES, csv, figures, json, page, sentences};
 
 use crate::compare::{AlignmentSettings, CompareSettings, Comparison, ShiftFit, SideFit, alternatives_to, set_zero};
+use crate::divergence::finer_step;
 use crate::measured::{Measured, Sign};
 use crate::sweep::sample::{Method, Sampler};
-use crate::{Failure, Setting, StudyScene, divergence, runner};
+use crate::{Divergence, Failure, FinerStep, Setting, StudyScene, divergence, runner};
 use least_squares::{Point, levenberg_marquardt, nelder_mead};
 use objective::{Objective, Trial};
 use std::sync::Arc;
@@ -91,6 +92,8 @@ pub struct Fit {
     /// Up to when the fitted scene is predictable, s. It may be beyond `until`, where values that were fitted to more rows are predictable up to
     /// there only.
     pub horizon: f64,
+    /// A shorter step with which more rows would count; none where they all do, or a shorter step doesn't help.
+    pub finer_step: Option<FinerStep>,
     /// The measured and the fitted motion.
     pub comparison: Comparison,
     /// Whether the side from which the motion was seen was given: otherwise it was found, or assumed, as
@@ -213,15 +216,16 @@ impl Fit {
         let mut until = objective.until;
         let mut best: Vec<Trial> = starts;
         let mut horizon = until;
+        let mut predictable: Option<Divergence> = None;
         let (mut lengthened, mut turned) = (false, false);
         for round in 0..ROUNDS {
             let setting = objective.setting(&best[0].at);
             let scene = source.load(&setting).map_err(|found| FitError::NoMotion(Failure::from(found).to_string()))?;
-            horizon = match divergence(&scene.scene, cancel) {
-                Ok(found) => found.horizon(),
+            predictable = match divergence(&scene.scene, cancel) {
                 Err(Failure::Interrupted) => return Err(FitError::Interrupted),
-                Err(_) => until,
+                found => found.ok(),
             };
+            horizon = predictable.map_or(until, |found| found.horizon());
             let cut = horizon.min(resolved.scene.time.end);
             // The first values may be predictable for less time than the fitted ones: what these can be
             // compared with counts, too. Rows that come, go and would come again stay away.
@@ -252,7 +256,13 @@ impl Fit {
             && let Ok(divergence) = divergence(&scene.scene, cancel)
         {
             horizon = divergence.horizon();
+            predictable = Some(divergence);
         }
+        let last = objective.motion.t.last().map_or(f64::INFINITY, |last| last + best[0].shift);
+        let finer_step = predictable.and_then(|own| {
+            let scene = source.scene(&objective.setting(&best[0].at)).ok()?;
+            finer_step(&scene, &own, last.min(own.end), cancel).ok().flatten()
+        });
         if objective.cancel.load(std::sync::atomic::Ordering::Relaxed) {
             return Err(FitError::Interrupted);
         }
@@ -307,6 +317,7 @@ impl Fit {
             restarts: best.iter().map(|trial| (value(trial), trial.cost)).collect(),
             evaluations,
             horizon,
+            finer_step,
             comparison,
             sign_given: settings.alignment.sign.is_some(),
             before,

@@ -1,6 +1,7 @@
 //! What a fit writes.
 
 use super::{Estimate, Fit, SAME_HORIZON};
+use crate::axes::in_seconds;
 use crate::compare::{
     Alignment, STYLE, fixed, horizon_note, motion_figures, origin_of_side, other_alignments, outliers, sentences_of,
 };
@@ -70,7 +71,7 @@ pub fn json(fit: &Fit, scene: &str, measured: &str, block: &str) -> String {
             let (low, high) = found.interval();
             json!({
                 "name": found.name, "unit": found.unit, "value": found.value, "standard_error": found.standard_error,
-                "interval_95": [low, high], "as_good": found.as_good, "at_bound": found.at_bound, "standard_error_share_of_range": found.share_of_range,
+                "interval_95": [low, high], "as_good": found.as_good, "with_half_step": found.with_half_step, "at_bound": found.at_bound, "standard_error_share_of_range": found.share_of_range,
             })
         })
         .collect();
@@ -101,6 +102,7 @@ pub fn json(fit: &Fit, scene: &str, measured: &str, block: &str) -> String {
         "is_misfit": fit.is_misfit(),
         "minima_hardly_worse": hardly_worse(fit).map(|(values, cost)| json!({ "values": values, "cost": cost })).collect::<Vec<_>>(),
         "horizon": fit.horizon,
+        "finer_step": fit.finer_step.map(|finer| json!({ "step": finer.step, "horizon": finer.horizon })),
         "fitted_until": fit.until,
         "fitted_rows": fit.rows,
         "restarts": restarts,
@@ -231,6 +233,16 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
                 spaced(&found.unit),
             ));
         }
+        let (low, high) = found.interval();
+        if found.share_of_range.is_some() && found.with_half_step.abs() > 0.5 * (high - low) {
+            texts.push(format!(
+                "warning: half the step would change {} by about {}{}, more than its interval holds: the step is too long for what was \
+                 measured",
+                found.name,
+                short(found.with_half_step),
+                spaced(&found.unit)
+            ));
+        }
         if found.share_of_range.is_some_and(|share| !share.is_finite()) {
             texts.push(format!(
                 "warning: near the fitted values the motion doesn’t depend on {}, or only by what the time shift and the origins that are \
@@ -290,15 +302,11 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
     };
     texts.push(format!(
         "{}fitted up to t = {:.3} s ({cut}), {} of {} rows{}",
-        if short_horizon { "warning: " } else { "" },
+        if short_horizon || fit.finer_step.is_some() { "warning: " } else { "" },
         if ends_before { last } else { fit.until },
         fit.rows,
-        fit.comparison.measured.t.len(),
-        if short_horizon {
-            ": a shorter step may make more of the motion predictable, as `teeter run --horizon` tells"
-        } else {
-            ""
-        }
+        t.len(),
+        remedy(fit, short_horizon, ends_before)
     ));
     let Alignment { sign, sign_found, .. } = fit.comparison.alignment;
     texts.push(format!(
@@ -329,6 +337,29 @@ pub fn sentences(fit: &Fit) -> Vec<String> {
     texts
 }
 
+/// What would let more rows count, after a colon; nothing where nothing is known to.
+fn remedy(fit: &Fit, short_horizon: bool, ends_before: bool) -> String {
+    let at_end = fit.until >= fit.comparison.trace.end() && !ends_before;
+    match fit.finer_step {
+        Some(finer) => format!(
+            ": with a shorter step the motion is predictable up to t = {:.3} s, and late rows narrow the intervals most: fit again with \
+             --set time.step=\"{}\" (where the table is itself of a run, that needs this step, too)",
+            finer.horizon,
+            in_seconds(finer.step)
+        ),
+        None if short_horizon && fit.horizon <= (1.0 + SAME_HORIZON) * fit.until => {
+            ": steps of down to an eighth make hardly more of the motion predictable".to_owned()
+        }
+        None if short_horizon => {
+            ": a shorter step may make more of the motion predictable, as `teeter run --horizon` tells".to_owned()
+        }
+        None if at_end && (fit.rows as f64) < MOST_ROWS * fit.comparison.measured.t.len() as f64 => {
+            ": a run of all rows (--set time.end) takes in the rest".to_owned()
+        }
+        None => String::new(),
+    }
+}
+
 /// Why the rows that are fitted end at `until`, s.
 fn origin_of_end(until: f64, horizon: f64) -> String {
     if (horizon - until).abs() <= SAME_HORIZON * until {
@@ -350,7 +381,7 @@ fn name_of(fit: &Fit, number: usize) -> String {
     }
 }
 
-/// Fewer rows than this part of all are told at the head of the page.
+/// Fewer rows than this part of all are told.
 const MOST_ROWS: f64 = 0.9;
 
 /// What came of the fit, at the head of the page.

@@ -77,6 +77,37 @@ impl Shard {
         let step = usize::try_from(self.of).unwrap_or(usize::MAX);
         (self.number - 1..total).step_by(step)
     }
+
+    /// The same cases in the order in which they are best run: a few neighbours at a time, and these spread over the study. What a case takes changes
+    /// along the axes, so that only cases from everywhere tell what all will take; neighbours share beams and equilibria.
+    pub fn spread(self, total: u64) -> impl Iterator<Item = u64> {
+        let Self { number, of } = self;
+        let count = self.count(total);
+        let size = count.div_ceil(PARTS).max(1);
+        let parts = count.div_ceil(size);
+        let stride = stride_over(parts);
+        let places = move |turn: u64| {
+            let first = turn * stride % parts * size;
+            first..(first + size).min(count)
+        };
+        (0..parts).flat_map(places).map(move |place| number - 1 + place * of)
+    }
+}
+
+/// Groups of neighbouring cases that are run one after the other: a tenth of them are spread finely enough.
+const PARTS: u64 = 128;
+
+/// The number nearest above the golden section of `count` that has no divisor in common with it: its multiples visit all
+/// remainders, the first ones evenly.
+fn stride_over(count: u64) -> u64 {
+    let divisor = |mut a: u64, mut b: u64| {
+        while b > 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    let golden = (0.618_034 * count as f64) as u64;
+    (golden.max(1)..).find(|stride| divisor(*stride, count) == 1).unwrap_or(1)
 }
 
 impl FromStr for Shard {
@@ -112,6 +143,25 @@ mod tests {
                 assert_eq!(places, (0..shard.count(17)).collect::<Vec<_>>());
             }
             assert_eq!(Shard::new(of, of).unwrap().count(0), 0);
+        }
+    }
+
+    #[test]
+    fn cases_are_run_from_everywhere_and_each_once() {
+        for total in [0, 1, 2, 3, 17, 128, 129, 1000, 10_007] {
+            for shard in [Shard::ALL, Shard::new(2, 3).unwrap()] {
+                let order: Vec<u64> = shard.spread(total).collect();
+                let mut all = order.clone();
+                all.sort_unstable();
+                assert_eq!(all, shard.cases(total).collect::<Vec<_>>());
+                // The mean of the first tenth of a ramp is near that of all; in ascending order it would be a tenth of it.
+                let tenth = order.len() / 10;
+                let mean = order.iter().take(tenth).sum::<u64>() as f64 / tenth as f64;
+                assert!(tenth < 10 || (mean / total as f64 - 0.5).abs() < 0.1, "{total}: {mean}");
+                // Most follow their neighbour in large studies.
+                let next = order.windows(2).filter(|pair| pair[1] == pair[0] + shard.of()).count();
+                assert!(total < 10_000 || next as f64 > 0.95 * order.len() as f64, "{total}: {next}");
+            }
         }
     }
 
