@@ -146,7 +146,7 @@ pub(super) fn of(
         names.push((name.to_owned(), unit.to_owned(), value, 1.0));
     }
     let rho = lag_one(&fitted.residuals);
-    let fewer = if rho > 0.0 { (1.0 + rho) / (1.0 - rho).max(1e-3) } else { 1.0 };
+    let fewer = correlated(rho);
     let n = fitted.residuals.len() as f64;
     let freedom = (n - columns.len() as f64).max(1.0);
     let variance = fitted.cost * n / freedom * fewer;
@@ -249,6 +249,11 @@ pub(super) fn of(
         misfit: misfit(fitted.cost * n, freedom, rho),
         better: beside.better,
     })
+}
+
+/// How many residuals are worth one, where each has this correlation with the next.
+pub(super) fn correlated(rho: f64) -> f64 {
+    if rho > 0.0 { (1.0 + rho) / (1.0 - rho).max(1e-3) } else { 1.0 }
 }
 
 /// What half the time step changes of the residuals, with the same values; none if that has no motion.

@@ -1,5 +1,6 @@
 //! What a fit writes.
 
+use super::confidence::correlated;
 use super::{Estimate, Fit, SAME_HORIZON};
 use crate::axes::in_seconds;
 use crate::compare::{
@@ -31,6 +32,9 @@ const HARDLY: f64 = 0.15;
 
 /// Another minimum with a sum of squares up to so many times the least is told.
 const HARDLY_WORSE: f64 = 2.0;
+
+/// Not one by so many standard deviations worse, where what is left is noise.
+const CLEARLY_WORSE: f64 = 6.0;
 
 /// Residuals of up to this many times the noise are taken to be noise.
 const DESCRIBED: f64 = 1.5;
@@ -117,7 +121,7 @@ fn spaced(unit: &str) -> String {
     if unit.is_empty() { String::new() } else { format!(" {unit}") }
 }
 
-/// Values outside the intervals at which other starts ended, with hardly more left.
+/// Values outside the intervals at which other starts ended, with hardly more left: where that is noise, hardly more than that can account for.
 fn hardly_worse(fit: &Fit) -> impl Iterator<Item = &(Vec<f64>, f64)> {
     let outside = |values: &[f64]| {
         values.iter().zip(&fit.estimates).any(|(value, found)| {
@@ -125,7 +129,15 @@ fn hardly_worse(fit: &Fit) -> impl Iterator<Item = &(Vec<f64>, f64)> {
             *value < low || *value > high
         })
     };
-    fit.restarts.iter().skip(1).filter(move |(values, cost)| *cost <= HARDLY_WORSE * fit.cost && outside(values))
+    let noise = (!fit.is_misfit()).then(|| fit.residuals as f64 / correlated(fit.residual_correlation));
+    fit.restarts.iter().skip(1).filter(move |(values, cost)| is_hardly_worse(cost / fit.cost, noise) && outside(values))
+}
+
+/// Whether a sum of squares of so many times the least is told, with the number of independent residuals where what is left is noise.
+fn is_hardly_worse(times: f64, noise: Option<f64>) -> bool {
+    // A difference of χ².
+    let clearly = noise.is_some_and(|residuals| (times - 1.0) * residuals > CLEARLY_WORSE * CLEARLY_WORSE);
+    times <= HARDLY_WORSE && !clearly
 }
 
 /// A value with half of its 95 % interval, to two digits of the standard error; ends that are bounds are named.
@@ -455,4 +467,18 @@ pub fn page(fit: &Fit, title: &str, names: [&str; 3]) -> Result<String, AxisErro
 /// [`AxisError`] if a value can't be shown.
 pub fn figures(fit: &Fit, width: f64) -> Result<Vec<(String, String)>, AxisError> {
     motion_figures(&fit.comparison, fit.before.as_ref(), Some(width))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_hardly_worse;
+
+    #[test]
+    fn a_minimum_that_noise_cannot_account_for_is_clearly_worse() {
+        // 0.95 against 0.88 of the noise: nothing with 100 residuals, eleven standard deviations with 990.
+        let times = (0.95_f64 / 0.88).powi(2);
+        assert!(is_hardly_worse(times, Some(100.0)) && !is_hardly_worse(times, Some(990.0)));
+        // What a model doesn't describe isn't noise.
+        assert!(is_hardly_worse(times, None) && !is_hardly_worse(2.5, None));
+    }
 }
