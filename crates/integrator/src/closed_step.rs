@@ -246,11 +246,10 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         if self.looked.len() < self.closed.len() {
             self.look_ahead(model, from, span.h, work)?;
         }
-        let mut rounds = 0;
+        let mut rounds = summits::Rounds::default();
         let outcome = loop {
             let outcome = self.solve_to_its_end(model, from, span, work)?;
-            rounds += 1;
-            if rounds == summits::MOST_ROUNDS || !self.summits_have_moved(model, from, span.h, work)? {
+            if !self.summits_have_moved(model, from, span.h, &mut rounds, work)? {
                 break outcome;
             }
         };
