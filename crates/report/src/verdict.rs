@@ -16,7 +16,7 @@ mod stance;
 mod standing;
 
 use carrier::Carrier;
-use columns::Column;
+use columns::{Column, Lean};
 use falling::Joints;
 use floor::Floor;
 pub(crate) use going::Going;
@@ -249,6 +249,8 @@ struct Seen {
     fallen: bool,
     /// The column of which it has been a part since the start, or when that passed its point of no return.
     column: Option<Column>,
+    /// Of the lowest of a stack.
+    lean: Option<Lean>,
     /// Since when it is still, s.
     still: Option<f64>,
     /// How long it was still at most between two motions, s; `None` before the first.

@@ -38,6 +38,19 @@ pub(super) struct Beyond {
     pull: f64,
 }
 
+/// How the lowest of a stack is turned against the common point of no return of all of it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Lean {
+    /// By how much it is past it, rad; negative if it isn't.
+    past: f64,
+    /// To the side to which it is nearer to it, or past it.
+    way: Way,
+    /// Since when it is past it, if it is, s.
+    since: f64,
+    /// How many blocks the stack has.
+    blocks: usize,
+}
+
 impl Column {
     /// By how much a block at an angle (rad) is past the point of no return to a side, rad.
     fn past(&self, angle: f64, way: Way) -> f64 {
@@ -82,6 +95,7 @@ impl Fates {
         }
         let is_on_single = |number: usize| matches!(watch.blocks[number].on, Some(SupportingBody::Block(below)) if watch.above[below] == Some(number) && !watch.blocks[below].driven);
         for lowest in (0..watch.blocks.len()).filter(|number| !is_on_single(*number)) {
+            self.look_at_lean(watch, layout, (before, lowest), state);
             let mut next = Some(lowest);
             while let Some(root) = next {
                 let mut group = vec![root];
@@ -93,6 +107,33 @@ impl Fates {
                 self.enter_column(watch, layout, (before, &group), state);
             }
         }
+    }
+
+    /// Looks since when the lowest of a stack is turned past the common point of no return of all of it, whether they turn as one or not.
+    fn look_at_lean(&mut self, watch: &Watch, layout: &Layout, (before, root): (f64, usize), state: &State) {
+        let mut group = vec![root];
+        while let Some(number) = group.last().and_then(|top| watch.above[*top]) {
+            group.push(number);
+        }
+        let lean = &mut self.blocks[root].lean;
+        let tops = edges(&watch.blocks, layout, state, &group, root).filter(|_| group.len() > 1);
+        let Some([left, right]) = tops else {
+            *lean = None;
+            return;
+        };
+        let level = watch.blocks[root].outline.as_ref().map_or(0.0, |of| of.level());
+        let angle = state.q[layout.blocks[root].range.start + 2];
+        let past = [(angle - left - level, Way::Left), (right + level - angle, Way::Right)];
+        let earlier = *lean;
+        let (past, way) = if past[0].0 > past[1].0 { past[0] } else { past[1] };
+        let since = match earlier {
+            Some(Lean { past: from, way: same, .. }) if same == way && from < 0.0 && past > 0.0 => {
+                before + from / (from - past) * (state.t - before)
+            }
+            Some(Lean { past: from, way: same, since, .. }) if same == way && from > 0.0 => since,
+            _ => before,
+        };
+        *lean = Some(Lean { past, way, since, blocks: group.len() });
     }
 
     /// Whether a block has only turned with the one below it so far, as seen from the lowest of them, and stays in its place.
@@ -113,7 +154,7 @@ impl Fates {
             let (left, right) = (room(*left), -room(*right));
             group.len() > 1 && left > 0.0 && right > 0.0 && (to_left / left).max(to_right / right) >= ROCKED
         });
-        let earlier = self.blocks[root].column;
+        let Seen { column: earlier, lean, .. } = self.blocks[root];
         for number in group {
             let known = &mut self.blocks[*number].column;
             // What passed it together is past it, whether it stays together or not.
@@ -129,8 +170,12 @@ impl Fates {
                 if past > 0.0 {
                     // As the lowest of them passed it.
                     let from = earlier.map_or(0.0, |earlier| column.past(earlier.angle + ahead, way));
-                    let share = if from < 0.0 { from / (from - past) } else { 1.0 };
-                    let since = before + share * (state.t - before);
+                    // Where joints opened on the way it is a column again by now, but was past it before.
+                    let whole = lean.filter(|lean| lean.way == way && lean.past > 0.0 && lean.blocks == group.len());
+                    let since = match from < 0.0 {
+                        true => before + from / (from - past) * (state.t - before),
+                        false => whole.map_or(before, |lean| lean.since),
+                    };
                     column.beyond = Some(Beyond { since, way, pull: pull(blocks, layout, state, group, way) });
                 }
                 column
