@@ -120,7 +120,7 @@ fn cases_that_warn_are_counted_by_the_kinds_of_warnings() {
 #[test]
 fn the_warnings_of_a_case_are_those_of_its_summary() {
     let lintel = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/lintel.toml");
-    let grid = "[grid]\ntime.scheme = [\"moreau-jean-located\"]\ntime.end = [\"0.2 s\"]\n";
+    let grid = "[grid]\ntime.scheme = [\"moreau-jean-located\"]\ntime.end = [\"0.3 s\"]\n";
     let folder = study("end-warnings", &format!("scene = {lintel:?}\n{grid}"));
     done(&folder, &["sweep", "sweep.toml", "--out", "all"]);
     let row = &table(&folder.join("all/results.csv"))[1];
