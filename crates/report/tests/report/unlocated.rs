@@ -9,7 +9,7 @@ pub(crate) fn lintel(scheme: &str) -> String {
     let [head, rest] = text.split_once("[time]").map(|(head, rest)| [head, rest]).unwrap();
     let own = |line: &&str| !line.starts_with("end") && !line.starts_with("scheme");
     let rest = rest.lines().filter(own).collect::<Vec<_>>().join("\n");
-    format!("{head}[time]\nend = '0.2 s'\nscheme = '{scheme}'{rest}")
+    format!("{head}[time]\nend = '0.3 s'\nscheme = '{scheme}'{rest}")
 }
 
 #[test]
