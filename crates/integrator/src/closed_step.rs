@@ -49,7 +49,7 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     summits: Vec<ContactId>,
     /// The mean velocity of the motion that was tried, and the coordinates in its middle; memory.
     mean: Vec<f64>,
-    q_turned: Vec<f64>,
+    q_tried: Vec<f64>,
     middle: Candidates<D>,
     /// Of each of these, at q̃_m and at q̃, how far it is to the end of its surface, m.
     rooms: [Vec<f64>; 2],
@@ -122,9 +122,9 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             v_free: Vec::new(),
             q_ahead: Vec::new(),
             q_mid: Vec::new(),
-            mean: Vec::new(),
             summits: Vec::new(),
-            q_turned: Vec::new(),
+            mean: Vec::new(),
+            q_tried: Vec::new(),
             middle: Vec::new(),
             rooms: [const { Vec::new() }; 2],
             goes_past_ends: false,
@@ -249,7 +249,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         let mut rounds = summits::Rounds::default();
         let outcome = loop {
             let outcome = self.solve_to_its_end(model, from, span, work)?;
-            if !self.summits_have_moved(model, from, span.h, &mut rounds, work)? {
+            if !self.takes_frames_of_summits(model, from, span.h, &mut rounds, work)? {
                 break outcome;
             }
         };
@@ -330,7 +330,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.v_free.resize(model.size().v, 0.0);
         self.q_mid.resize(model.size().q, 0.0);
         self.mean.resize(model.size().v, 0.0);
-        self.q_turned.resize(model.size().q, 0.0);
+        self.q_tried.resize(model.size().q, 0.0);
         self.q_ahead.resize(model.size().q, 0.0);
         if self.rigid.len() != model.parts().len() {
             self.find_what_is_rigid(model);
@@ -338,16 +338,16 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
     }
 
     /// Finds frames and gaps at q̃_m and q̃ of the closed contacts that haven't been looked at in this
-    /// step: the free motion is the same for all its attempts.
+    /// step: the free motion is the same for all its attempts. Once these are of the motion that was found, so are those of
+    /// contacts that close later.
     fn look_ahead(&mut self, model: &Model<D>, state: &State, h: f64, work: &mut Workspace<D>) -> Result<(), Mismatch> {
         // ½(v⁰ + v_free), the mean velocity of the free motion.
         let mean = self.step.v_end_mut();
         mean.iter_mut().zip(&self.v_free).zip(&state.v).for_each(|((v, free), v0)| *v = 0.5 * (free + v0));
         if self.looked.is_empty() {
             model.move_along(&state.q, mean, h, &mut self.q_ahead);
-            work.locate_past_ends(model, &self.q_ahead, &self.closed, &mut self.ahead, &mut self.rooms[1])?;
             model.move_along(&state.q, mean, 0.5 * h, &mut self.q_mid);
-            work.locate_past_ends(model, &self.q_mid, &self.closed, &mut self.middle, &mut self.rooms[0])?;
+            self.locate_closed(model, work)?;
         } else {
             let Self { closed, looked, new, found, found_rooms, .. } = self;
             new.clear();
@@ -361,6 +361,12 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         }
         self.looked.clone_from(&self.closed);
         Ok(())
+    }
+
+    /// Finds frames and gaps of all closed contacts at q̃_m and q̃.
+    fn locate_closed(&mut self, model: &Model<D>, work: &mut Workspace<D>) -> Result<(), Mismatch> {
+        work.locate_past_ends(model, &self.q_ahead, &self.closed, &mut self.ahead, &mut self.rooms[1])?;
+        work.locate_past_ends(model, &self.q_mid, &self.closed, &mut self.middle, &mut self.rooms[0])
     }
 
     /// Whether contact `i` of an attempt of `h` (s) may be past the end of its surface after it. It

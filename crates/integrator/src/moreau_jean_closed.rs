@@ -40,6 +40,9 @@ impl MoreauJeanClosedSettings {
 /// 0 ≤ U_n¹ + s_n ⊥ p_n ≥ 0,   Coulomb on U_t¹ + s_t
 /// ```
 ///
+/// Where an elastic surface comes out under a base and carries it, v¹ of the motion that was found takes the place of v_free in q̃_m and q̃
+/// (`docs/schemes.md`).
+///
 /// A contact that pressed in a step is *closed* in the next, whatever its gap. An open contact
 /// becomes closed where the step would end in the surface, and deeper than it began: the step is
 /// then tried again. If it approaches, s_n = e U_n⁰ for an impact, and 0 for an approach that its

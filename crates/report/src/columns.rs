@@ -2,7 +2,9 @@
 
 use crate::contacts;
 use crate::driven::Driven;
-use crate::recorder::{BLOCKS, BLOCKS_HEADER, ENERGY_HEADER, IMPACTS_HEADER, TABLES, trajectory_header};
+use crate::recorder::{
+    BLOCKS_HEADER, ENERGY_HEADER, IMPACTS_HEADER, TABLES, blocks_in_columns, is_written, trajectory_header,
+};
 use crate::sections::{ENVELOPES_HEADER, Sections};
 use serde_json::{Map, Value};
 use teeter_scenario::scene::Scene;
@@ -68,14 +70,13 @@ pub fn unit<'n>(table: &str, column: &'n str) -> Option<&'static str> {
 /// # Errors
 /// None today; as serialising.
 pub fn columns(scene: &Scene, layout: &Layout) -> Result<String, serde_json::Error> {
-    let of_blocks: Vec<usize> = scene.block_tables.columns(layout.blocks.len()).collect();
-    let trajectory = trajectory_header(layout, &of_blocks, &Sections::new(scene, layout), &Driven::of(scene, layout));
+    let blocks = blocks_in_columns(scene, layout);
+    let trajectory = trajectory_header(layout, &blocks, &Sections::new(scene, layout), &Driven::of(scene, layout));
     let mut tables = Map::new();
     let headers = [trajectory.as_str(), contacts::HEADER, IMPACTS_HEADER, ENERGY_HEADER, BLOCKS_HEADER];
-    let written = |(table, _): &(&str, &str)| *table != BLOCKS || scene.block_tables.has_rows();
     let has_envelopes = scene.beams.iter().any(|beam| beam.output.envelope);
     let more = has_envelopes.then_some(("envelopes.csv", ENVELOPES_HEADER));
-    for (table, header) in TABLES.into_iter().zip(headers).filter(written).chain(more) {
+    for (table, header) in TABLES.into_iter().zip(headers).filter(|(table, _)| is_written(table, scene)).chain(more) {
         let columns = header.trim_end().split(',').map(|column| {
             let unit = unit(table, column).unwrap_or_default();
             Value::Array(vec![column.into(), unit.into()])

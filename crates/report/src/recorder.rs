@@ -167,12 +167,11 @@ impl<'a> Recorder<'a> {
         layout: &'a Layout,
         tell: &'a mut dyn FnMut(&str),
     ) -> Result<Self, ResultsError> {
-        let columns = scene.block_tables.columns(layout.blocks.len()).collect();
-        let table = |k, header: &dyn Fn() -> String| match TABLES[k] {
-            BLOCKS if !scene.block_tables.has_rows() => Ok(Table::nowhere()),
-            name => results.table(name, &header()),
+        let table = |k, header: &dyn Fn() -> String| match is_written(TABLES[k], scene) {
+            true => results.table(TABLES[k], &header()),
+            false => Ok(Table::nowhere()),
         };
-        Self::fresh(table, columns, scene, layout, tell)
+        Self::fresh(table, blocks_in_columns(scene, layout), scene, layout, tell)
     }
 
     /// A recorder of a run of `scene` that writes no tables: for what a run shows and warns of.
@@ -249,12 +248,11 @@ impl<'a> Recorder<'a> {
         tell: &'a mut dyn FnMut(&str),
     ) -> Result<Self, ResultsError> {
         let sections = Sections::new(scene, layout);
-        let columns = scene.block_tables.columns(layout.blocks.len()).collect();
-        let table = |k: usize| match TABLES[k] {
-            BLOCKS if !scene.block_tables.has_rows() => Ok(Table::nowhere()),
-            name => results.reopened_table(name, lengths[k]),
+        let table = |k: usize| match is_written(TABLES[k], scene) {
+            true => results.reopened_table(TABLES[k], lengths[k]),
+            false => Ok(Table::nowhere()),
         };
-        Self::with(table, columns, kept, sections, scene, layout, tell)
+        Self::with(table, blocks_in_columns(scene, layout), kept, sections, scene, layout, tell)
     }
 
     fn with(
@@ -344,9 +342,7 @@ impl<'a> Recorder<'a> {
         self.line.clear();
         push(&mut self.line, state.t);
         for block in self.columns.iter().map(|&block| &self.layout.blocks[block]) {
-            for x in state.q[block.range.clone()].iter().chain(&state.v[block.range.clone()]) {
-                push_next(&mut self.line, *x);
-            }
+            push_motion(&mut self.line, block, state);
         }
         let mut section_values = self.kept.section_values.iter();
         for (number, beam) in self.layout.beams.iter().enumerate() {
@@ -370,9 +366,7 @@ impl<'a> Recorder<'a> {
             push(&mut self.line, state.t);
             self.line.push(',');
             self.line.push_str(&block.name);
-            for x in state.q[block.range.clone()].iter().chain(&state.v[block.range.clone()]) {
-                push_next(&mut self.line, *x);
-            }
+            push_motion(&mut self.line, block, state);
             self.line.push('\n');
             self.blocks.rows(&self.line)?;
         }
@@ -543,6 +537,23 @@ impl Observer<2> for Recorder<'_> {
         self.warn_of_resolution(state);
         Ok(self.flush()?)
     }
+}
+
+/// Position, angle and their velocities, each after a comma.
+fn push_motion(line: &mut String, block: &BlockPlace, state: &State) {
+    for x in state.q[block.range.clone()].iter().chain(&state.v[block.range.clone()]) {
+        push_next(line, *x);
+    }
+}
+
+/// Whether a run of this scene has this one of the [`TABLES`].
+pub(crate) fn is_written(table: &str, scene: &Scene) -> bool {
+    table != BLOCKS || scene.block_tables.has_rows()
+}
+
+/// The blocks that have columns in the trajectory, by their numbers.
+pub(crate) fn blocks_in_columns(scene: &Scene, layout: &Layout) -> Vec<usize> {
+    scene.block_tables.columns(layout.blocks.len()).collect()
 }
 
 /// The header of the trajectory, with columns of these blocks.

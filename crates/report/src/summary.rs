@@ -97,7 +97,7 @@ pub struct Summary {
     pub unlocated_steps: u64,
     /// Zero crossings of the angles against what carries the blocks, on a beam against its undeformed axis.
     pub crossings: Vec<CrossingRow>,
-    /// Crossings and peaks from the lines between the feet of blocks on beams.
+    /// Crossings and peaks from the lines between the feet of blocks on beams, for the page.
     #[serde(skip)]
     pub(crate) passages: Passages,
     /// All crossings, counted; only where the list holds no more than the first of them.
@@ -436,7 +436,8 @@ impl Summary {
         let Passages { crossings, peaks } =
             Passages::of(layout, record.rocking.iter().map(|monitor| (monitor, Vec::new())));
         let lines = record.feet_lines.iter().map(|line| (line.monitor(), line.slopes().collect()));
-        let passages = Passages::of(layout, lines);
+        // What has no headline has no page.
+        let passages = if wanted("headline") { Passages::of(layout, lines) } else { Passages::default() };
         let gains = &ledger.positive_contact_work;
         let verdict = record.fates.verdict(scene, layout, state, &record.rocking);
         let mut deflections = record.deflections.clone();

@@ -21,7 +21,7 @@ use falling::Joints;
 use floor::Floor;
 pub(crate) use going::Going;
 use going::Touched;
-pub(crate) use headline::{headline, percent};
+pub(crate) use headline::{headline, part, percent};
 pub use lying::Side;
 use serde::{Deserialize, Serialize};
 use sliding::Slides;

@@ -46,8 +46,7 @@ impl PileEstimate {
         let along = |[x, y]: [f64; 2]| [x * up[1] - y * up[0], x * up[0] + y * up[1]];
         // Size, and where it is: across gravity, and upwards.
         let all: Vec<(f64, [f64; 2], bool)> = placed
-            .map(|(block, at)| (area(block).max(f64::MIN_POSITIVE), along(at), block.motion.is_whole()))
-            .map(|(area, at, is_held)| (area.sqrt(), at, is_held))
+            .map(|(block, at)| (area(block).max(f64::MIN_POSITIVE).sqrt(), along(at), block.motion.is_whole()))
             .collect();
         let ground = scene.ground.as_ref().map(|ground| {
             let points =

@@ -31,14 +31,14 @@ impl Default for Rounds {
 }
 
 impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
-    /// Whether a summit that presses has another frame in the middle of the motion that was tried, so that its gap changes over the step by
-    /// more than rounding. If so, frames and gaps of all closed contacts are those of that motion now, and the step is to be solved
-    /// again. Where the rounds lead nowhere they are those of the motion without impulses again, for the last time.
+    /// Takes frames and gaps of all closed contacts from the motion that was tried, where the frame of a summit that presses differs there so
+    /// much that its gap changes over the step by more than rounding; where such rounds lead nowhere, from the motion without impulses again,
+    /// for the last time. Whether it took any: the step is then to be solved again.
     ///
     /// q̃_m is the middle of the motion without impulses. Where a load presses, a summit is elsewhere there, always to the same side, and as
     /// its frame turns with its place, each tremor of the surface lets the base sink in. That sets free energy, which keeps the tremor alive,
     /// and with it the sinking. With a frame in the middle of the motion itself, what the gap is off by has no sign, and what trembles dies down.
-    pub(super) fn summits_have_moved(
+    pub(super) fn takes_frames_of_summits(
         &mut self,
         model: &Model<D>,
         from: &State,
@@ -66,10 +66,9 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             Some(change) if change <= self.gap_tolerance && change > SHRINKS * rounds.change => Ok(false),
             Some(change) if change <= SHRINKS * rounds.change && rounds.count < MOST_ROUNDS => {
                 (rounds.count, rounds.change) = (rounds.count + 1, change);
-                std::mem::swap(&mut self.q_mid, &mut self.q_turned);
-                work.locate_past_ends(model, &self.q_mid, &self.closed, &mut self.middle, &mut self.rooms[0])?;
+                std::mem::swap(&mut self.q_mid, &mut self.q_tried);
                 model.move_along(&from.q, &self.mean, h, &mut self.q_ahead);
-                work.locate_past_ends(model, &self.q_ahead, &self.closed, &mut self.ahead, &mut self.rooms[1])?;
+                self.locate_closed(model, work)?;
                 self.stage.keep_islands_anew();
                 Ok(true)
             }
@@ -85,7 +84,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
     }
 
     /// The most by which frames in the middle of the motion that was tried change the gap of a summit over the step, m; `None` where one is no
-    /// summit there. Leaves that middle in `q_turned`.
+    /// summit there. Leaves that middle in `q_tried`.
     fn change_of_frames(
         &mut self,
         model: &Model<D>,
@@ -93,10 +92,10 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         h: f64,
         work: &mut Workspace<D>,
     ) -> Result<Option<f64>, Mismatch> {
-        let Self { step, mean, q_turned, .. } = self;
+        let Self { step, mean, q_tried, .. } = self;
         mean.iter_mut().zip(step.v_end()).zip(&from.v).for_each(|((mean, v1), v0)| *mean = 0.5 * (v1 + v0));
-        model.move_along(&from.q, mean, 0.5 * h, q_turned);
-        work.locate(model, q_turned, &self.summits, &mut self.found)?;
+        model.move_along(&from.q, mean, 0.5 * h, q_tried);
+        work.locate(model, q_tried, &self.summits, &mut self.found)?;
         if self.found.len() < self.summits.len() {
             return Ok(None);
         }
@@ -104,7 +103,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         for contact in self.stage.contacts() {
             let Some(candidate) = super::find(&self.found, contact.id) else { continue };
             self.row.clear();
-            self.row.push(model, &self.q_turned, candidate)?;
+            self.row.push(model, &self.q_tried, candidate)?;
             let taken = 0.5 * (contact.u_before[0] + contact.u_after[0]);
             most = most.max(h * (self.row.velocity(0, &self.mean)[0] - taken).abs());
         }

@@ -156,9 +156,8 @@ impl Plots<'_> {
         let contact = panel.of_contact.as_ref();
         let name = contact.map(|(_, name)| name.clone()).filter(|name| !name.is_empty());
         let notes: Vec<String> = [panel.note.clone(), note.or(name)].into_iter().flatten().collect();
-        let (lines, is_left_out) = without_filled(lines, range);
         let note = (!notes.is_empty()).then(|| notes.join("; "));
-        let note = if is_left_out { note.map(|note| of_strong(&note)) } else { note };
+        let (lines, note) = strong_alone(lines, range, note);
         let drawn = Panel::new(y.clone()).with(lines).telling_apart().note(note);
         self.marked(guided(drawn.levels(panel.guides.clone()), &panel.guides, &y), contact.map(|(pair, _)| *pair))
     }
@@ -360,9 +359,7 @@ impl Plots<'_> {
                 };
                 let mut note = note;
                 if what == "Normal" {
-                    let (drawn, is_left_out) = without_filled(over_the_raw(lines, std::mem::take(&mut means)), range);
-                    lines = drawn;
-                    note = if is_left_out { note.map(|note| of_strong(&note)) } else { note };
+                    (lines, note) = strong_alone(over_the_raw(lines, std::mem::take(&mut means)), range, note);
                 }
                 panels.push(self.marked(Panel::new(y).with(lines).telling_apart(), Some(pair)).note(note));
             }
@@ -480,7 +477,8 @@ fn cut_to(at: Option<(f64, f64)>, lines: &[Series], unit: &str) -> (Option<(f64,
 /// of the time in which it is anything. And whether nothing pale is left.
 fn without_filled(mut lines: Vec<Series>, range: Option<(f64, f64)>) -> (Vec<Series>, bool) {
     let Some((low, high)) = range.filter(|_| lines.iter().any(Series::is_faint)) else { return (lines, false) };
-    let bottom = low.max(0.0) - (-low).max(0.0) * f64::from(u8::from(low <= -high));
+    // Where the axis ends for what is below 0: there, or just below 0, for what has one sign.
+    let bottom = if low > -high { low.max(0.0) } else { low };
     let fills = |line: &Series| {
         let (mut filled, mut all) = (0_usize, 0_usize);
         let y: Vec<f64> = line.points().iter().map(|point| point.1).collect();
@@ -495,6 +493,12 @@ fn without_filled(mut lines: Vec<Series>, range: Option<(f64, f64)>) -> (Vec<Ser
     lines.retain(|line| !(line.is_faint() && fills(line)));
     let is_left_out = !lines.iter().any(Series::is_faint);
     (lines, is_left_out)
+}
+
+/// Lines without what would be an even grey, with their note.
+fn strong_alone(lines: Vec<Series>, range: Option<(f64, f64)>, note: Option<String>) -> (Vec<Series>, Option<String>) {
+    let (lines, is_left_out) = without_filled(lines, range);
+    (lines, if is_left_out { note.map(|note| of_strong(&note)) } else { note })
 }
 
 /// So many points of a curve are a vertical stroke of its figure.

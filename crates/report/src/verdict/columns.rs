@@ -111,26 +111,19 @@ impl Fates {
 
     /// Looks since when the lowest of a stack is turned past the common point of no return of all of it, whether they turn as one or not.
     fn look_at_lean(&mut self, watch: &Watch, layout: &Layout, (before, root): (f64, usize), state: &State) {
-        let mut group = vec![root];
-        while let Some(number) = group.last().and_then(|top| watch.above[*top]) {
-            group.push(number);
-        }
-        let lean = &mut self.blocks[root].lean;
-        let tops = edges(&watch.blocks, layout, state, &group, root).filter(|_| group.len() > 1);
-        let Some([left, right]) = tops else {
-            *lean = None;
+        if watch.above[root].is_none() {
             return;
-        };
+        }
+        let group: Vec<usize> = std::iter::successors(Some(root), |below| watch.above[*below]).collect();
+        let lean = &mut self.blocks[root].lean;
+        let Some([left, right]) = edges(&watch.blocks, layout, state, &group, root) else { return };
         let level = watch.blocks[root].outline.as_ref().map_or(0.0, |of| of.level());
         let angle = state.q[layout.blocks[root].range.start + 2];
         let past = [(angle - left - level, Way::Left), (right + level - angle, Way::Right)];
-        let earlier = *lean;
         let (past, way) = if past[0].0 > past[1].0 { past[0] } else { past[1] };
-        let since = match earlier {
-            Some(Lean { past: from, way: same, .. }) if same == way && from < 0.0 && past > 0.0 => {
-                before + from / (from - past) * (state.t - before)
-            }
-            Some(Lean { past: from, way: same, since, .. }) if same == way && from > 0.0 => since,
+        let since = match lean.filter(|lean| lean.way == way) {
+            Some(lean) if lean.past < 0.0 && past > 0.0 => passed_at([before, state.t], [lean.past, past]),
+            Some(lean) if lean.past > 0.0 => lean.since,
             _ => before,
         };
         *lean = Some(Lean { past, way, since, blocks: group.len() });
@@ -173,7 +166,7 @@ impl Fates {
                     // Where joints opened on the way it is a column again by now, but was past it before.
                     let whole = lean.filter(|lean| lean.way == way && lean.past > 0.0 && lean.blocks == group.len());
                     let since = match from < 0.0 {
-                        true => before + from / (from - past) * (state.t - before),
+                        true => passed_at([before, state.t], [from, past]),
                         false => whole.map_or(before, |lean| lean.since),
                     };
                     column.beyond = Some(Beyond { since, way, pull: pull(blocks, layout, state, group, way) });
@@ -182,6 +175,11 @@ impl Fates {
             });
         }
     }
+}
+
+/// When something that was `past` a point by less than nothing and then by more passed it, in a straight line between two times, s.
+fn passed_at([before, after]: [f64; 2], [from, past]: [f64; 2]) -> f64 {
+    before + from / (from - past) * (after - before)
 }
 
 /// [`Beyond::pull`] of blocks, the lowest first, that turn about the foot of that on a side.

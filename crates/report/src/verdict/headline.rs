@@ -70,7 +70,7 @@ fn deflected(state: &State, deflections: &[LargestDeflection]) -> String {
 }
 
 /// A part of a limit: what stays below it isn't rounded up to it.
-fn part(x: f64) -> String {
+pub(crate) fn part(x: f64) -> String {
     if x < 1.0 { digits(x.min(0.999)) } else { digits(x) }
 }
 

@@ -4,7 +4,7 @@ use super::{scientific, with_code, with_prefix_of};
 use crate::all_digits::{all_digits, with_all_digits};
 use crate::page::content;
 use crate::page::panels::{Measure, Units};
-use crate::verdict::{BodyVerdict, Fate, ROCKED};
+use crate::verdict::{BodyVerdict, Fate, ROCKED, part};
 use crate::{Summary, shortest, with_digits};
 use serde_json::Value;
 use std::fmt::Write;
@@ -298,6 +298,5 @@ fn unit_of(path: &str) -> Option<&'static str> {
 
 /// φ/α for people; nothing of less than a hundredth: such a block doesn't rock, in a word.
 fn share_of_critical_angle(share: f64) -> Option<String> {
-    // What stays below it isn't rounded up to it, as in the headline.
-    (share >= ROCKED).then(|| all_digits(if share < 1.0 { share.min(0.999) } else { share }, 3))
+    (share >= ROCKED).then(|| part(share))
 }
