@@ -1,0 +1,140 @@
+//! What became of a block, and its numbers, as `summary.json` has them (`docs/verdict.md`).
+
+use super::{Going, Side, Way};
+use serde::Serialize;
+
+/// What became of a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Fate {
+    /// It lies on another side, or falls to it.
+    Overturned,
+    /// Its mass centre went past an end of the beam that carried it.
+    Left,
+    /// It is below everything that could hold it.
+    Sunk,
+    /// It fell from its place among other blocks that held it.
+    Fell,
+    /// It came to rest where it stood.
+    Rests,
+    /// It slid, and may have come to rest.
+    Slid,
+    /// It rocks on.
+    Rocks,
+    /// It moves in another way, such as a bouncing or a rolling block.
+    Moves,
+}
+
+/// What became of a block, with its numbers; those that have no meaning for it are null.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BodyVerdict {
+    /// The block.
+    pub body: String,
+    /// What became of it.
+    pub what: Fate,
+    /// When, s: overturned, left, sunk or fell, came to rest; of a block that rocks on the last peak; null for others.
+    pub t: Option<f64>,
+    /// To which side it overturned or left its beam.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub way: Option<Way>,
+    /// When it had fallen from its place among other blocks, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fell_at: Option<f64>,
+    /// When it passed the point of no return for good, s.
+    pub overturned_at: Option<f64>,
+    /// From when on it rests, s.
+    pub rests_from: Option<f64>,
+    /// On which side it rests, of one that does and doesn't lean on something.
+    pub lies_on: Option<Side>,
+    /// How far it slid along what carries it, from the start to the end, m; to the right positive.
+    pub slid: Option<f64>,
+    /// The farthest that it was from where it stood, of one that slid back from there, m; to the right positive. Of one that has then
+    /// slid farther past its start, where it turned.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub farthest: Option<f64>,
+    /// The farthest to the left and to the right of where it stood that it was, m, of one that slid to one side, back, and on again.
+    #[serde(skip)]
+    pub(crate) to_and_fro: Option<[f64; 2]>,
+    /// Whether what is below it moves on as prescribed.
+    #[serde(skip)]
+    pub(crate) is_driven: bool,
+    /// Whether it has slid, and stands by now, though it isn't still.
+    #[serde(skip)]
+    pub(crate) stopped: bool,
+    /// How fast it moves at the end relative to what carries it, m/s; of one that slides on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed: Option<f64>,
+    /// The largest |φ|/α.
+    pub max_phi_over_alpha: Option<f64>,
+    /// The last peak of its rocking, rad; of one that did not cross zero yet the largest angle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub last_peak: Option<f64>,
+    /// Against what its peaks count, in words; none where that is the horizontal.
+    #[serde(skip)]
+    pub(crate) against: Option<String>,
+    /// Since when it is still, of one that is so at the end, but not for long enough to rest, s.
+    #[serde(skip)]
+    pub(crate) still_from: Option<f64>,
+    /// From when on it stands, s: 0, or when it settled; none of what flies or tumbles on.
+    #[serde(skip)]
+    pub(crate) stands_from: Option<f64>,
+    /// Of a block that rocks and has not been upright yet, nor turned back: its angle at the end, rad.
+    #[serde(skip)]
+    pub(crate) on_its_way: Option<f64>,
+    /// To which side it still turns, of one that does and never was farther than at the end.
+    #[serde(skip)]
+    pub(crate) tips: Option<Way>,
+    /// Of a block that rests, but lies on none of its sides: its angle at the end, rad.
+    #[serde(skip)]
+    pub(crate) leans_at: Option<f64>,
+    /// Of a block that began in flight, turned over and settled: by how much it has turned at the end, rad.
+    #[serde(skip)]
+    pub(crate) tumbled: Option<f64>,
+    /// Of a block that overturned: by how much it has turned at the end, rad, if that is more than to the next side.
+    #[serde(skip)]
+    pub(crate) turned: Option<f64>,
+    /// Of a block that rests: whether what carries it moves at the end.
+    #[serde(skip)]
+    pub(crate) is_carried: bool,
+    /// How it moves at the end, of one that does and has no other fate.
+    #[serde(skip)]
+    pub(crate) going: Option<Going>,
+    /// Of one that is shaken where it stands, or hops there: what it stands on, and in the end on other blocks, in words, if that moves at the end.
+    #[serde(skip)]
+    pub(crate) on_what_moves: Option<&'static str>,
+    /// The beam on which it stood throughout, of one that has only moved with it.
+    #[serde(skip)]
+    pub(crate) stood_on: Option<String>,
+    /// Of a block that left its beam: which.
+    #[serde(skip)]
+    pub(crate) left_beam: Option<String>,
+    /// Of a block that overturned: past which end of the beam that carried it, directly or by others, it has fallen since, and which beam that is.
+    #[serde(skip)]
+    pub(crate) fell_off: Option<(Way, String)>,
+    /// Whether it still touches that.
+    #[serde(skip)]
+    pub(crate) touches_beam: bool,
+    /// To which side its mass centre was past what it stands on from the start, as that of a plank that reaches too far over an edge: nothing of its
+    /// own brings it back, however little it has turned.
+    #[serde(skip)]
+    pub(crate) past_edge: Option<Way>,
+    /// Of a block that overturned as one with others, a column: the lowest of them.
+    #[serde(skip)]
+    pub(crate) overturned_with: Option<String>,
+    /// Of a block that turns as one with those below it: the lowest of them, on whose base they rock.
+    #[serde(skip)]
+    pub(crate) turns_with: Option<String>,
+    /// Whether these are a column: one block on the other, none slid.
+    #[serde(skip)]
+    pub(crate) in_column: bool,
+    /// Of the lowest block of a column: its largest φ/α, with the α of all of them together.
+    #[serde(rename = "column_phi_over_alpha", skip_serializing_if = "Option::is_none")]
+    pub column: Option<f64>,
+}
+
+impl BodyVerdict {
+    /// Its largest φ/α as it is told: of the lowest block of a column that of all of it; none where nothing of its own brings it back.
+    pub(crate) fn share(&self) -> Option<f64> {
+        self.column.or(self.max_phi_over_alpha).filter(|_| self.past_edge.is_none())
+    }
+}

@@ -1,0 +1,184 @@
+//! What became of a block, from what was seen of it up to the end of the run (`docs/verdict.md`).
+
+use super::lying::Side;
+use super::watch::Watched;
+use super::{BEGAN_TO_TIP, BodyVerdict, FLAT, Fate, Fates, Going, ROCKED, SLID, Seen, TUMBLED, Way};
+use teeter_integrator::{RockingMonitor, State};
+use teeter_scenario::scene::{BlockScene, Placement};
+use teeter_scenario::simulation::Layout;
+
+impl Seen {
+    pub(super) fn verdict(
+        &self,
+        watched: &Watched,
+        (number, block): (usize, &BlockScene),
+        layout: &Layout,
+        state: &State,
+        (rocking, fell): (Option<&RockingMonitor>, Option<f64>),
+    ) -> BodyVerdict {
+        let rests = Fates::rests(self, watched, state.t);
+        let spin = state.v[layout.blocks[number].range.start + 2];
+        let overturned = self.beyond.filter(|(_, way)| {
+            let comes_back = || {
+                let edge = self.stance(watched).map(|stance| stance.edge(*way));
+                edge.is_some_and(|edge| watched.comes_back(edge, *way, self.angle, spin))
+            };
+            self.fallen || rests.is_some() || !comes_back()
+        });
+        // With its column it overturned before it was past its own point of no return.
+        let with_column = self.column.and_then(|column| column.overturned(spin, rests.is_some()));
+        let overturned = match (overturned, with_column) {
+            (Some((t, way)), Some((with_column, same))) if way == same => Some((t.min(with_column), way)),
+            (alone, with_column) => alone.or(with_column),
+        };
+        let place = watched.place(layout, number, state);
+        let slid = self.stood.zip(place).map(|(from, to)| to - from).filter(|_| overturned.is_none() && fell.is_none());
+        let least = SLID * watched.base();
+        let has_slid = slid.is_some_and(|slid| slid.abs() >= least);
+        let to_and_fro = slid.is_some_and(|slid| self.slides.is_to_and_fro(slid));
+        // One that has come down on a corner and can't turn over any more rocks, though it hasn't settled yet.
+        let settling = self.settling.filter(|settling| state.t - settling.since >= FLAT * watched.still_time);
+        let part = self.part.or(settling.map(|settling| settling.part));
+        let lately = |last: f64| state.t - last < FLAT * watched.still_time;
+        let rocked = match settling {
+            Some(settling) if self.part.is_none() => settling.rocked.is_some_and(lately),
+            _ => part.is_some_and(|part| part >= ROCKED),
+        };
+        // What came down and slid off since doesn't rock any more.
+        let only_slides = has_slid && self.rocked.is_some_and(|last| !lately(last));
+        let peak = rocking.and_then(|monitor| {
+            let of_crossings = || monitor.peaks().last().copied();
+            let largest = || Some(monitor.extreme()).filter(|peak| peak.phi != 0.0);
+            monitor.turned().or_else(of_crossings).or_else(largest)
+        });
+        // In flight it did not rock.
+        let since = self.stands_from.or(settling.map(|settling| settling.since));
+        let peak = peak.filter(|peak| since.is_none_or(|since| peak.t >= since));
+        let bounces = rests.is_none() && {
+            let crossed = rocking.and_then(|monitor| monitor.crossings().last()).map(|crossing| crossing.t);
+            self.bounces(watched, layout, number, state, crossed)
+        };
+        // It has left its beam when that doesn't press on it any more.
+        let a_few_steps = 3.5 * state.t / state.step.max(1) as f64;
+        let touches_beam = self.pressed.is_some_and(|last| state.t - last < a_few_steps);
+        let left =
+            self.out.map(|(t, way)| (if touches_beam { t } else { self.pressed.map_or(t, |last| last.max(t)) }, way));
+        // On springs a block leans to and fro without rocking.
+        let stands_on_both = watched.on_springs
+            && watched.feet.is_some()
+            && self.lifted.or(self.stands_from).is_some_and(|last| !lately(last));
+        let (what, t, way) = match (overturned, left, self.sunk, rests) {
+            (Some((t, way)), ..) => (Fate::Overturned, Some(t), Some(way)),
+            (None, Some((t, way)), ..) => (Fate::Left, Some(t), Some(way)),
+            (None, None, Some(t), _) => (Fate::Sunk, Some(t), None),
+            _ if fell.is_some() => (Fate::Fell, fell, None),
+            (None, None, None, Some(t)) if has_slid => (Fate::Slid, Some(t), None),
+            (None, None, None, Some(t)) => (Fate::Rests, Some(t), None),
+            _ if bounces => (Fate::Moves, None, None),
+            _ if rocked && !only_slides && !stands_on_both => (Fate::Rocks, peak.map(|peak| peak.t), None),
+            _ if has_slid || to_and_fro => (Fate::Slid, None, None),
+            _ => (Fate::Moves, None, None),
+        };
+        let lies_on = rests
+            .and(watched.outline.as_ref())
+            .and_then(|outline| Side::below(block, outline, self.angle - watched.slope(&state.q)));
+        let leans = rests.is_some() && lies_on.is_none() && watched.outline.is_some();
+        let tumbled = match block.placement {
+            Placement::Free { angle, .. } => self.began.map(|_| self.angle - angle),
+            Placement::On { .. } => None,
+        };
+        let tilt = layout.tilt(number, &state.q);
+        let turns_on = |monitor: &&RockingMonitor| {
+            let way = Way::of(tilt);
+            way.sign() * watched.velocity(layout, number, state)[2] > 0.0 && monitor.extreme().phi.abs() <= tilt.abs()
+        };
+        // A block that rides on another one that rocks is tilted against it by rounding.
+        let began_to_tip = |monitor: &&RockingMonitor| {
+            let alpha = self.stance(watched).map_or(0.0, |stance| 0.5 * (stance.left.top - stance.right.top));
+            monitor.extreme().phi.abs() >= BEGAN_TO_TIP * alpha
+        };
+        let not_upright = rocking.filter(|monitor| [Fate::Rocks, Fate::Moves].contains(&what) && monitor.count() == 0);
+        let moves = what == Fate::Moves && self.still.is_none();
+        let rides = what == Fate::Moves && self.rides(watched, least);
+        let going = moves.then(|| self.going(watched, layout, number, state)).flatten();
+        let going = going.or(rides.then_some(Going::Rides));
+        let going = going.or((moves && stands_on_both && rocked).then_some(Going::Vibrates));
+        // By its way along what carries it, as that may move under it. Where that is shaken, it may slide on.
+        let stopped = what == Fate::Slid
+            && rests.is_none()
+            && self.still.is_none()
+            && state.t >= watched.driven_until
+            && self.went.is_some_and(|(last, _)| !lately(last));
+        let turning = not_upright.filter(|_| what == Fate::Rocks || (moves && going.is_none())).filter(turns_on);
+        // What stands on a beam that bends slowly turns with it.
+        let turns = |_: &&RockingMonitor| what == Fate::Rocks || part.is_some_and(|part| part >= BEGAN_TO_TIP);
+        let tips = turning.filter(turns).filter(began_to_tip).map(|_| Way::of(tilt));
+        let on_its_way = not_upright.filter(|_| what == Fate::Rocks || tips.is_some()).filter(began_to_tip);
+        let trembles = || self.trembles(slid, least).filter(|_| moves && turning.is_none());
+        let going = going.or_else(trembles);
+        let is_here = matches!(what, Fate::Rests | Fate::Moves) && rests != Some(0.0) && self.stands_from == Some(0.0);
+        let beam = |when: bool| watched.carrier.beam().filter(|_| when).map(|beam| layout.beams[beam].name.clone());
+        BodyVerdict {
+            body: layout.blocks[number].name.clone(),
+            what,
+            t,
+            way,
+            fell_at: fell,
+            overturned_at: overturned.map(|(t, _)| t),
+            rests_from: rests,
+            leans_at: leans.then_some(tilt),
+            lies_on,
+            farthest: slid.and_then(|slid| self.slides.farthest(slid, least)),
+            to_and_fro: to_and_fro.then(|| self.slides.reached()),
+            is_driven: state.t < watched.driven_until,
+            slid,
+            stopped,
+            speed: (what == Fate::Slid && rests.is_none() && self.still.is_none() && !stopped).then(|| {
+                let [vx, vy, _] = watched.velocity(layout, number, state);
+                vx.hypot(vy)
+            }),
+            max_phi_over_alpha: part,
+            last_peak: peak.filter(|_| what == Fate::Rocks).map(|peak| peak.phi),
+            against: watched.against(layout, number, &state.q),
+            still_from: self.still.filter(|_| rests.is_none()),
+            stands_from: since,
+            turned: self
+                .began
+                .filter(|_| what == Fate::Overturned)
+                .map(|began| (self.angle - if watched.on.is_some() { 0.0 } else { began }).abs())
+                .filter(|turn| *turn >= TUMBLED),
+            is_carried: rests.is_some() && {
+                let q = &state.q[layout.blocks[number].range.clone()];
+                let [vx, vy, spin] = watched.carrier.base_velocity([q[0], q[1]], layout, state);
+                state.t < watched.driven_until || vx.hypot(vy) + watched.reach * spin.abs() > watched.still_speed
+            },
+            tumbled: tumbled.filter(|turn| turn.abs() >= TUMBLED && what != Fate::Overturned),
+            on_its_way: on_its_way.map(|_| tilt),
+            on_what_moves: watched.carrier.word().filter(|_| {
+                let q = &state.q[layout.blocks[number].range.clone()];
+                let [vx, vy, _] = watched.carrier.velocity([q[0], q[1]], layout, state);
+                let moves = state.t < watched.driven_until || vx.hypot(vy) > watched.still_speed;
+                // What rides on a driven block is told to stand on it.
+                let is_told = going == Some(Going::Rides) && watched.carrier.is_by_block();
+                (stopped || going.is_some_and(Going::stays)) && moves && !is_told
+            }),
+            going,
+            tips,
+            stood_on: beam(is_here && self.never_moved(watched, least)),
+            left_beam: beam(what == Fate::Left),
+            fell_off: (what == Fate::Overturned)
+                .then(|| {
+                    let q = &state.q[layout.blocks[number].range.clone()];
+                    watched.carrier.below_an_end([q[0], q[1]], watched.reach, layout, &state.q)
+                })
+                .flatten()
+                .map(|(way, beam)| (way, layout.beams[beam].name.clone())),
+            touches_beam: what == Fate::Left && touches_beam,
+            past_edge: self.past_edge,
+            overturned_with: None,
+            turns_with: None,
+            in_column: false,
+            column: None,
+        }
+    }
+}
