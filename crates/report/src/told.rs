@@ -6,6 +6,9 @@ use teeter_scenario::scene::{BlockScene, Scene};
 /// A penetration below this part of the largest block is rounding of positions.
 const ROUNDING: f64 = 1e-14;
 
+/// Warnings that steps are too long for the motion to be relied on, beside all that begin with `under-resolved`.
+const TOO_COARSE: [&str; 2] = ["deep-penetration", "far-turn"];
+
 /// What of a scene decides how its numbers are told.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Told {
@@ -43,8 +46,8 @@ impl Summary {
     /// What the sentence on what became of the scene has to be read with, if steps are too long for that to be relied on.
     #[must_use]
     pub fn reserve(&self) -> Option<&'static str> {
-        let unresolved = self.warnings.iter().any(|warning| warning.code.starts_with("under-resolved"));
-        unresolved.then_some("see the warnings")
+        let is_too_coarse = |code: &str| code.starts_with("under-resolved") || TOO_COARSE.contains(&code);
+        self.warnings.iter().any(|warning| is_too_coarse(&warning.code)).then_some("see the warnings")
     }
 
     /// The deepest penetration as it is told, m: 0 where it is no more than rounding.

@@ -13,6 +13,7 @@ mod going;
 mod headline;
 mod judgement;
 mod lying;
+mod many;
 mod sliding;
 mod stance;
 mod standing;
@@ -97,6 +98,8 @@ struct Seen {
     began: Option<f64>,
     /// Of such a block, while nothing but a push could turn it over.
     settling: Option<Settling>,
+    /// Its angle at the start of the run, from which its turns count, rad.
+    from: f64,
     /// Its angle at the end of the last step, rad.
     angle: f64,
     /// The same against what carries it ([`Watched::tilt`]), and the slope of the line between its feet on its beam then.
@@ -108,15 +111,15 @@ struct Seen {
     turned: [f64; 2],
     /// By how much it was turned against what it is placed on when that was largest, rad.
     joint: f64,
-    /// When |φ|/α was last large enough to be called rocking, s.
-    rocked: Option<f64>,
+    /// When, s, and at which angle from where |φ|/α counts, rad, it last had turned by as much as is called rocking.
+    swung: Option<(f64, f64)>,
     /// Since when it is past a point of no return, s, and to which side.
     beyond: Option<(f64, Way)>,
     /// Whether it has fallen to the next side since.
     fallen: bool,
     /// The column of which it has been a part since the start, or when that passed its point of no return.
     column: Option<Column>,
-    /// Of the lowest of a stack.
+    /// Of a block on others, one on each: of the part of the stack up to it.
     lean: Option<Lean>,
     /// Since when it is still, s.
     still: Option<f64>,
@@ -135,10 +138,11 @@ struct Seen {
     stands_from: Option<f64>,
     /// Where it began to stand along what carries it, m.
     stood: Option<f64>,
-    /// How it has slid from there.
+    /// How it has slid, from the start of the run.
     slides: Slides,
-    /// When, s, and where, m, it last had gone on by more than what is still creeps in the time after which it has stopped.
-    went: Option<(f64, f64)>,
+    /// What holds it from below in a step so far, N·s, and its slip by that; memory.
+    #[serde(skip)]
+    sliding: [f64; 2],
     /// The end of the last step in which not both of its feet pressed, s; of a block on springs.
     lifted: Option<f64>,
     /// How high it was at the start, m; of a block that other blocks hold.
@@ -205,7 +209,16 @@ impl Fates {
             let stood = if stands { watched.place(layout, number, state) } else { None };
             let (began, stands_from) = (stands.then_some(about), stands.then_some(state.t));
             let height = (stands && self.joints.only_by_blocks(number)).then(|| watched.height(layout, number, state));
-            self.blocks.push(Seen { began, angle, stands_from, stood, height, past_edge, ..Seen::default() });
+            self.blocks.push(Seen {
+                began,
+                from: angle,
+                angle,
+                stands_from,
+                stood,
+                height,
+                past_edge,
+                ..Seen::default()
+            });
         }
         self.look(watch, layout, state.t, state);
         Ok(())
@@ -221,6 +234,7 @@ impl Fates {
     pub(crate) fn observe(&mut self, watch: &Watch, layout: &Layout, step: &StepReport<'_, 2>, state: &State) {
         self.look(watch, layout, step.t_start, state);
         self.find_struck(watch, layout, step);
+        self.slide(watch, step);
         self.touch(watch, layout, step, state.t);
         if self.stopped.is_none() {
             self.stopped = self.stop(watch, state.t).map(|reason| (state.t, reason));
@@ -263,10 +277,10 @@ impl Fates {
             let carried = seen.out.is_none() || seen.beyond.is_some();
             if let Some(mut stance) = stance.filter(|_| carried) {
                 let slope = watched.slope(&state.q);
-                if let Some(part) = stance.part(q[2], watch.slope(number, layout, state)) {
-                    if part >= ROCKED {
-                        seen.rocked = Some(t);
-                    }
+                let line = watch.slope(number, layout, state);
+                let (tilt, least) = (q[2] - line, 0.5 * ROCKED * (stance.left.top - stance.right.top));
+                seen.swung = seen.swung.filter(|(_, at)| (tilt - at).abs() < least).or(Some((t, tilt)));
+                if let Some(part) = stance.part(q[2], line) {
                     if seen.part.is_none_or(|most| part > most) {
                         (seen.part, seen.joint) = (Some(part), layout.tilt(number, &state.q).abs());
                     }
@@ -292,11 +306,6 @@ impl Fates {
             seen.angle = q[2];
             let [left, right] = &mut seen.turned;
             (*left, *right) = (left.max(seen.tilt.0), right.max(-seen.tilt.0));
-            if let Some((from, to)) = seen.stood.zip(watched.place(layout, number, state)) {
-                seen.slides.go_to(to - from, SLID * watched.base());
-                let creeps = FLAT * watched.still_time * watched.still_speed;
-                seen.went = seen.went.filter(|(_, at)| (to - at).abs() < creeps).or(Some((t, to)));
-            }
             if let Some(height) = seen.height {
                 let drop = height - watched.height(layout, number, state);
                 seen.dropped = if drop > watched.thickness { seen.dropped.or(Some(t)) } else { None };

@@ -54,3 +54,33 @@ fn a_column_whose_joints_opened_overturns_where_all_of_it_passed_its_point_of_no
     let at = ran.summary["overturned_at"].as_f64().unwrap();
     assert!((at - t[row]).abs() < 0.03, "{at} s, past it at {} s", t[row]);
 }
+
+/// A stack of five that turns over as one after its joints opened on the way, by more than a fiftieth of what it then turns; with two accelerations of the
+/// ground, the upper four were a column by then, or none were.
+#[test]
+fn a_stack_that_turns_over_in_one_goes_as_one_column() {
+    for acceleration in ["3.6 m/s^2", "4 m/s^2"] {
+        let text = format!(
+            "[time]\nend = '3 s'\nstep = '1 ms'\n[ground]\nmotion = {{ acceleration = ['{acceleration}', '0 m/s^2'], signal = 'shake' }}\n\
+             [signal.shake]\nshape = 'one-sine'\nstart = '0.2 s'\nperiod = '1.1 s'\n[material.marble]\ndensity = '2700 kg/m^3'\n[block.d]\n\
+             material = 'marble'\nwidth = '50 cm'\nheight = '60 cm'\ndepth = '50 cm'\non = 'ground'\nat = '0 m'\n\
+             repeat = {{ count = 5, stacked = true }}\n[contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.7\n[contact.joints]\n\
+             between = ['*', '*']\nfriction = 0.7\n"
+        );
+        let ran = written(&folder(&format!("verdict-five-{}", &acceleration[..1])), &text);
+        let (t, alpha) = (ran.column("t"), (0.5_f64 / 3.0).atan());
+        let phi: Vec<Vec<f64>> = (1..=5).map(|k| ran.column(&format!("d-{k}.phi"))).collect();
+        // Since then they turn by the same, to a tenth of a degree.
+        let row = phi[0].iter().rposition(|phi| phi.abs() < 1.2 * alpha).unwrap();
+        let near = |k: usize| (0..5).all(|of| (phi[of][k] - phi[0][k]).abs() < 2e-3);
+        assert!(near(row) && near(row + 300), "{acceleration}");
+        let headline = ran.summary["headline"].as_str().unwrap();
+        assert!(
+            headline.starts_with("all 5 blocks overturned as one column on the base of `d-1` to the right at t = "),
+            "{acceleration}: {headline}"
+        );
+        let passed = t[phi[0].iter().rposition(|phi| phi.abs() < alpha).unwrap()];
+        let told = ran.summary["overturned_at"].as_f64().unwrap();
+        assert!((told - passed).abs() < 0.03, "{acceleration}: {told}, {passed}");
+    }
+}

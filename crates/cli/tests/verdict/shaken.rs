@@ -37,6 +37,10 @@ fn what_ground_shakes_slides_to_and_fro_whenever_the_run_ends() {
             assert!((1e-3 * told_farthest - farthest).abs() < 0.02 * farthest, "{end}: {told}, {farthest}");
             assert!(told.contains("`statue` is standing still on the block below it, on ground that moves"), "{told}");
             assert!(ran.verdict("pedestal")["rests_from"].is_null(), "{told}");
+            let in_all: f64 = slips.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+            let told_in_all = ran.verdict("pedestal")["slid_in_all"].as_f64().unwrap();
+            assert!((told_in_all - in_all).abs() < 0.02 * in_all && in_all > 1.5 * farthest, "{told_in_all} {in_all}");
+            assert!(told.contains(" in all)"), "{told}");
         }
     }
 }
@@ -60,7 +64,7 @@ fn what_slides_on_after_it_was_shaken_does_not_go_to_and_fro() {
     let ran = written(&folder("verdict-shaken-once"), text);
     let told = headline(&ran);
     assert!(
-        told.starts_with("`b` slides on, slid 38.42 mm up the slope, then to ") && told.ends_with(" so far"),
+        told.starts_with("`b` slides on, slid 38.43 mm up the slope, then to ") && told.ends_with(" so far"),
         "{told}"
     );
 }
@@ -106,4 +110,26 @@ fn the_swing_in_which_a_block_settles_counts() {
     let swing = t.iter().zip(&phi).filter(|(t, _)| **t > 0.45).fold(0.0_f64, |most, (_, phi)| most.max(phi.abs()));
     let told = ran.verdict("brick")["max_phi_over_alpha"].as_f64().unwrap();
     assert!((told - swing / 0.5_f64.atan()).abs() < 1e-3, "{told}, {swing}");
+}
+
+/// Ground that is jerked to one side time and again, gently back: what slides on it only goes one way.
+#[test]
+fn what_creeps_along_on_shaken_ground_is_told_alike_while_it_slides_and_while_it_sticks() {
+    let mut slides = [false; 2];
+    for end in ["2.9 s", "3 s", "3.1 s", "3.2 s", "3.3 s", "3.4 s"] {
+        let text = format!(
+            "[time]\nend = '{end}'\nstep = '1 ms'\n[ground]\nincline = '6 deg'\n\
+             motion = {{ acceleration = ['3 m/s^2', '0 m/s^2'], signal = 'shake' }}\n[signal.shake]\nshape = 'harmonic'\nfrequency = '2 Hz'\n\
+             [material.m]\ndensity = '2000 kg/m^3'\n[block.b]\nmaterial = 'm'\nwidth = '30 cm'\nheight = '5 cm'\ndepth = '10 cm'\n\
+             on = 'ground'\nat = '0 m'\n[contact.c]\nbetween = ['b', 'ground']\nfriction = 0.3\n"
+        );
+        let ran = written(&folder(&format!("verdict-shaken-creeps-{}", end.replace(' ', "-"))), &text);
+        let told = headline(&ran);
+        assert!(
+            told.starts_with("`b` slid by ") && told.ends_with(" down the slope on the moving ground"),
+            "{end}: {told}"
+        );
+        slides[usize::from(ran.verdict("b")["speed"].is_null())] = true;
+    }
+    assert_eq!(slides, [true; 2], "some runs end while it slides, others while it sticks");
 }

@@ -45,3 +45,35 @@ fn what_stands_on_pads_with_both_feet_does_not_rock() {
     let jolted = written(&folder("verdict-pads-jolted"), &text.replace("end = '3 s'", "end = '0.9 s'"));
     assert!(jolted.summary["headline"].as_str().unwrap().contains("rock"), "{}", jolted.summary["headline"]);
 }
+
+/// It rocks for half a second, then both of its feet ride on a beam that hardly loses energy: its angle is that of the beam.
+#[test]
+fn what_stands_on_a_beam_that_rings_does_not_rock_on() {
+    for end in ["1.5 s", "1.58 s", "2 s", "2.4 s"] {
+        let text = format!(
+            "[time]\nend = '{end}'\nstep = '100 us'\n{STEEL}[beam.deck]\nmaterial = 'steel'\nspan = '1 m'\nwidth = '5 cm'\nthickness = '8 mm'\n\
+             elements = 20\nsupports = ['pinned', 'pinned']\ndamping_ratio = {{ mode = 1, ratio = 0.001 }}\nstart = 'static'\n\
+             probes = ['32 cm', '38 cm']\n[block.b]\nmaterial = 'stone'\nwidth = '6 cm'\nheight = '12 cm'\ndepth = '5 cm'\non = 'deck'\n\
+             at = '35 cm'\ntilt = '8 deg'\n[contact.c]\nbetween = ['b', 'deck']\nfriction = 0.5\n"
+        );
+        let ran = written(&folder(&format!("verdict-rings-{}", end.replace(' ', "-"))), &text);
+        let (t, phi) = (ran.column("t"), ran.column("b.phi"));
+        let [left, right] = ["deck.w@0.32", "deck.w@0.38"].map(|name| ran.column(name));
+        let alpha = 0.5_f64.atan();
+        let lifted = (0..t.len()).rfind(|k| (phi[*k] - (right[*k] - left[*k]).atan2(0.06)).abs() > 0.01 * alpha);
+        let stands_from = t[lifted.unwrap()];
+        assert!((0.2..0.9).contains(&stands_from), "{stands_from}");
+        let headline = ran.summary["headline"].as_str().unwrap();
+        let at = headline.split_once("at t = ").map_or("", |(_, rest)| rest);
+        let told: f64 = at.split(' ').next().and_then(|number| number.parse().ok()).unwrap_or(0.0);
+        assert!(
+            headline.starts_with("`b` stopped rocking at t = ") || headline.starts_with("`b` came to rest at t = "),
+            "{end}: {headline}"
+        );
+        assert!(
+            headline.starts_with("`b` came") || (1e-3 * told - stands_from).abs() < 0.05,
+            "{stands_from}: {headline}"
+        );
+        assert!(ran.verdict("b")["last_peak"].is_null(), "{headline}");
+    }
+}

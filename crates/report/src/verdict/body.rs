@@ -46,13 +46,23 @@ pub struct BodyVerdict {
     pub rests_from: Option<f64>,
     /// On which side it rests, of one that does and doesn't lean on something.
     pub lies_on: Option<Side>,
-    /// How far it slid along what carries it, from the start to the end, m; to the right positive.
+    /// How far it slid from the start to the end, m, to the right positive: its points, while they press on what holds it from below.
     pub slid: Option<f64>,
-    /// The farthest that it was from where it stood, of one that slid back from there, m; to the right positive. Of one that has then
+    /// The same, to and fro, in all.
+    pub slid_in_all: Option<f64>,
+    /// How far it is along what carries it from where it stood, m, to the right positive, by slides, flights, and hops.
+    pub displaced: Option<f64>,
+    /// Whether it slid by as much as is told.
+    #[serde(skip)]
+    pub(crate) has_slid: bool,
+    /// Where it is along what carries it, m, of one that stood from the start and got there by hops and flights, too.
+    #[serde(skip)]
+    pub(crate) elsewhere: Option<f64>,
+    /// The farthest that it slid, of one that slid back from there, m; to the right positive. Of one that has then
     /// slid farther past its start, where it turned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub farthest: Option<f64>,
-    /// The farthest to the left and to the right of where it stood that it was, m, of one that slid to one side, back, and on again.
+    /// The farthest to the left and to the right that it slid, m, of one that slid to one side, back, and on again.
     #[serde(skip)]
     pub(crate) to_and_fro: Option<[f64; 2]>,
     /// Whether what is below it moves on as prescribed.
@@ -99,6 +109,9 @@ pub struct BodyVerdict {
     /// How it moves at the end, of one that does and has no other fate.
     #[serde(skip)]
     pub(crate) going: Option<Going>,
+    /// Of one that trembles where it stands: when it last swung, s, if it rocked.
+    #[serde(skip)]
+    pub(crate) stopped_rocking: Option<f64>,
     /// Of one that is shaken where it stands, or hops there: what it stands on, and in the end on other blocks, in words, if that moves at the end.
     #[serde(skip)]
     pub(crate) on_what_moves: Option<&'static str>,

@@ -190,8 +190,9 @@ impl Carrier {
         matches!(self.root, On::Block(_))
     }
 
-    /// Velocity and angular velocity of what carries the block, where the block is.
-    pub(super) fn velocity(&self, at: [f64; 2], layout: &Layout, state: &State) -> [f64; 3] {
+    /// Velocity and angular velocity of what carries a block, as of a rigid body that reaches there: what stands still on it has these.
+    /// A beam has those of the line between the `feet` (x, m), on which the block stands, or else of its tangent where the block is.
+    pub(super) fn velocity(&self, at: [f64; 2], feet: Option<[f64; 2]>, layout: &Layout, state: &State) -> [f64; 3] {
         match &self.root {
             On::Ground(range) | On::Block(range) => {
                 let (q, v) = (&state.q[range.clone()], &state.v[range.clone()]);
@@ -199,12 +200,20 @@ impl Carrier {
             }
             On::Beam(beam, position) => {
                 let place = &layout.beams[*beam];
-                let [x, _] = beam_origin(*beam, *position, layout, &state.q);
+                let [x, y] = beam_origin(*beam, *position, layout, &state.q);
                 let [vx, vy] =
                     place.supports.clone().map_or([0.0; 2], |range| [state.v[range.start], state.v[range.start + 1]]);
-                let shape = place.beam.shape_clamped(at[0] - x);
-                let rate = place.deflection(&shape, &state.v[place.range.clone()]);
-                [vx, vy + rate.w, rate.slope]
+                let bent = |at: f64, values: &[f64]| {
+                    place.deflection(&place.beam.shape_clamped(at - x), &values[place.range.clone()])
+                };
+                let line = feet.map(|[left, right]| {
+                    let [from, to] = [left, right].map(|foot| bent(foot, &state.v).w);
+                    let spin = (to - from) / (right - left);
+                    (from + spin * (at[0] - left), spin)
+                });
+                let rate = bent(at[0], &state.v);
+                let (rise, spin) = line.unwrap_or((rate.w, rate.slope));
+                [vx - spin * (at[1] - y - bent(at[0], &state.q).w), vy + rise, spin]
             }
             On::Fixed => [0.0; 3],
         }
@@ -217,7 +226,7 @@ impl Carrier {
                 .supports
                 .clone()
                 .map_or([0.0; 3], |range| [state.v[range.start], state.v[range.start + 1], 0.0]),
-            On::Ground(_) | On::Fixed | On::Block(_) => self.velocity(at, layout, state),
+            On::Ground(_) | On::Fixed | On::Block(_) => self.velocity(at, None, layout, state),
         }
     }
 

@@ -11,6 +11,13 @@ use teeter_scenario::simulation::Layout;
 /// when they were turned the farthest.
 const AS_ONE: f64 = 0.02;
 
+/// Whether the joints between blocks are to have stayed closed so far, by the largest turns, or to be closed now.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum AsOne {
+    SoFar,
+    Now,
+}
+
 /// The column with which a block has turned as one so far, or did until they were past their point of no return.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Column {
@@ -38,7 +45,7 @@ pub(super) struct Beyond {
     pull: f64,
 }
 
-/// How the lowest of a stack is turned against the common point of no return of all of it.
+/// How the lowest of a stack is turned against the common point of no return of a part of the stack, from it up to a block.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Lean {
     /// By how much it is past it, rad; negative if it isn't.
@@ -47,8 +54,8 @@ pub(super) struct Lean {
     way: Way,
     /// Since when it is past it, if it is, s.
     since: f64,
-    /// How many blocks the stack has.
-    blocks: usize,
+    /// The lowest.
+    root: usize,
 }
 
 impl Column {
@@ -95,28 +102,35 @@ impl Fates {
         }
         let is_on_single = |number: usize| matches!(watch.blocks[number].on, Some(SupportingBody::Block(below)) if watch.above[below] == Some(number) && !watch.blocks[below].driven);
         for lowest in (0..watch.blocks.len()).filter(|number| !is_on_single(*number)) {
-            self.look_at_lean(watch, layout, (before, lowest), state);
+            self.look_at_leans(watch, layout, (before, lowest), state);
             let mut next = Some(lowest);
             while let Some(root) = next {
-                let mut group = vec![root];
-                next = watch.above[root];
-                while let Some(number) = next.filter(|number| self.is_as_one(watch, *number, root)) {
-                    group.push(number);
-                    next = watch.above[number];
+                let [group, now] = [AsOne::SoFar, AsOne::Now].map(|when| self.group(watch, root, when));
+                next = watch.above[group[group.len() - 1]];
+                self.enter_column(watch, layout, (before, &group), (AsOne::SoFar, state));
+                if now.len() > group.len() {
+                    self.enter_column(watch, layout, (before, &now), (AsOne::Now, state));
                 }
-                self.enter_column(watch, layout, (before, &group), state);
             }
         }
     }
 
-    /// Looks since when the lowest of a stack is turned past the common point of no return of all of it, whether they turn as one or not.
-    fn look_at_lean(&mut self, watch: &Watch, layout: &Layout, (before, root): (f64, usize), state: &State) {
+    /// Looks since when the lowest of a stack is turned past the common points of no return of its parts, from it up to each of its other blocks, whether
+    /// they turn as one or not.
+    fn look_at_leans(&mut self, watch: &Watch, layout: &Layout, (before, root): (f64, usize), state: &State) {
         if watch.above[root].is_none() {
             return;
         }
-        let group: Vec<usize> = std::iter::successors(Some(root), |below| watch.above[*below]).collect();
-        let lean = &mut self.blocks[root].lean;
-        let Some([left, right]) = edges(&watch.blocks, layout, state, &group, root) else { return };
+        let stack: Vec<usize> = std::iter::successors(Some(root), |below| watch.above[*below]).collect();
+        for top in 1..stack.len() {
+            self.look_at_lean(watch, layout, (before, &stack[..=top]), state);
+        }
+    }
+
+    fn look_at_lean(&mut self, watch: &Watch, layout: &Layout, (before, group): (f64, &[usize]), state: &State) {
+        let (root, top) = (group[0], group[group.len() - 1]);
+        let lean = &mut self.blocks[top].lean;
+        let Some([left, right]) = edges(&watch.blocks, layout, state, group, root) else { return };
         let level = watch.blocks[root].outline.as_ref().map_or(0.0, |of| of.level());
         let angle = state.q[layout.blocks[root].range.start + 2];
         let past = [(angle - left - level, Way::Left), (right + level - angle, Way::Right)];
@@ -126,18 +140,33 @@ impl Fates {
             Some(lean) if lean.past > 0.0 => lean.since,
             _ => before,
         };
-        *lean = Some(Lean { past, way, since, blocks: group.len() });
+        *lean = Some(Lean { past, way, since, root });
     }
 
-    /// Whether a block has only turned with the one below it so far, as seen from the lowest of them, and stays in its place.
-    fn is_as_one(&self, watch: &Watch, number: usize, root: usize) -> bool {
-        let most = |number: usize| self.blocks[number].turned.into_iter().fold(0.0, f64::max);
+    /// The blocks that turn as one with the lowest of them, that first.
+    fn group(&self, watch: &Watch, root: usize, when: AsOne) -> Vec<usize> {
+        let above = |below: &usize| watch.above[*below].filter(|number| self.is_as_one(watch, *number, root, when));
+        std::iter::successors(Some(root), above).collect()
+    }
+
+    /// Whether a block only turns with the one below it, as seen from the lowest of them, and stays in its place.
+    fn is_as_one(&self, watch: &Watch, number: usize, root: usize, when: AsOne) -> bool {
+        let turn = |number: usize| match when {
+            AsOne::SoFar => self.blocks[number].turned.into_iter().fold(0.0, f64::max),
+            AsOne::Now => self.blocks[number].tilt.0.abs(),
+        };
         let stays = self.blocks[number].slides.most() < SLID * watch.blocks[number].base();
-        !watch.blocks[root].driven && most(number) <= AS_ONE * most(root) && stays
+        !watch.blocks[root].driven && turn(number) <= AS_ONE * turn(root) && stays
     }
 
-    /// Takes in blocks that turn as one, the lowest first.
-    fn enter_column(&mut self, watch: &Watch, layout: &Layout, (before, group): (f64, &[usize]), state: &State) {
+    /// Takes in blocks that turn as one, the lowest first; those that do so only now if they are past their point of no return.
+    fn enter_column(
+        &mut self,
+        watch: &Watch,
+        layout: &Layout,
+        (before, group): (f64, &[usize]),
+        (when, state): (AsOne, &State),
+    ) {
         let root = group[0];
         let angle = |number: usize| state.q[layout.blocks[number].range.start + 2];
         let (blocks, level) = (&watch.blocks, watch.blocks[root].outline.as_ref().map_or(0.0, |of| of.level()));
@@ -147,14 +176,11 @@ impl Fates {
             let (left, right) = (room(*left), -room(*right));
             group.len() > 1 && left > 0.0 && right > 0.0 && (to_left / left).max(to_right / right) >= ROCKED
         });
-        let Seen { column: earlier, lean, .. } = self.blocks[root];
+        let earlier = self.blocks[root].column;
+        let lean = self.blocks[group[group.len() - 1]].lean.filter(|lean| lean.root == root && lean.past > 0.0);
         for number in group {
             let known = &mut self.blocks[*number].column;
-            // What passed it together is past it, whether it stays together or not.
-            if known.is_some_and(|known| known.beyond.is_some()) {
-                continue;
-            }
-            *known = edges.map(|[left, right]| {
+            let now = edges.map(|[left, right]| {
                 let tops = [right + level, left + level];
                 let ahead = angle(*number) - angle(root);
                 let mut column = Column { root, tops, ahead, angle: angle(*number), beyond: None };
@@ -164,7 +190,7 @@ impl Fates {
                     // As the lowest of them passed it.
                     let from = earlier.map_or(0.0, |earlier| column.past(earlier.angle + ahead, way));
                     // Where joints opened on the way it is a column again by now, but was past it before.
-                    let whole = lean.filter(|lean| lean.way == way && lean.past > 0.0 && lean.blocks == group.len());
+                    let whole = lean.filter(|lean| lean.way == way);
                     let since = match from < 0.0 {
                         true => passed_at([before, state.t], [from, past]),
                         false => whole.map_or(before, |lean| lean.since),
@@ -173,6 +199,12 @@ impl Fates {
                 }
                 column
             });
+            // What passed it together is past it, whether it stays together or not; unless it did so as a part of what had passed its own before.
+            let since = |column: &Option<Column>| column.and_then(|column| column.beyond).map(|beyond| beyond.since);
+            let is_new = since(known).is_none_or(|known| since(&now).is_some_and(|now| now < known));
+            if is_new && (when == AsOne::SoFar || since(&now).is_some()) {
+                *known = now;
+            }
         }
     }
 }

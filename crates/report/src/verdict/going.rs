@@ -1,7 +1,7 @@
 //! How a block moves that does so at the end of a run and has no other fate: it bounces, rolls, slides or falls (`docs/verdict.md`).
 
 use super::standing::SETTLED;
-use super::{BEGAN_TO_TIP, FLAT, Fates, ROCKED, Seen, Watch, Watched};
+use super::{BEGAN_TO_TIP, FLAT, Fates, Seen, Watch, Watched};
 use serde::{Deserialize, Serialize};
 use teeter_integrator::{State, StepReport};
 use teeter_scenario::scene::SupportingBody;
@@ -181,6 +181,11 @@ impl Fates {
 }
 
 impl Touched {
+    /// Whether it ever touched something.
+    pub(super) fn any(&self) -> bool {
+        self.last.is_some()
+    }
+
     /// Takes in how high over what carries it a block is at the end of a step, m.
     pub(super) fn rise(&mut self, height: f64) {
         self.now = height;
@@ -202,12 +207,15 @@ impl Seen {
         let landed = self.touched.landed.filter(|_| self.touched.rose >= least);
         let rides = last.is_some() && watched.gravity > 0.0 && self.touched.strayed() < least;
         if !rides && last.is_none_or(|last| t - last >= FLIGHT * watched.still_time) {
+            // What has just landed before, and is no lower than its size yet, comes down on its next corner.
+            let near = self.touched.left - self.touched.now < watched.reach;
+            let hops = |last: f64| near && landed.is_some_and(|landed| last - landed <= SETTLED * watched.still_time);
             // In free flight it is where it last touched something again when its speed has turned round.
             let is_above = |last: f64| vy > -0.5 * watched.gravity * (t - last);
             return Some(match last {
                 _ if watched.gravity == 0.0 => Going::Flies,
                 None if vy > 0.0 => Going::Flies,
-                Some(last) if landed.is_some() && is_above(last) => Going::Bounces,
+                Some(last) if hops(last) || (landed.is_some() && is_above(last)) => Going::Bounces,
                 Some(last) if is_above(last) => Going::Flies,
                 _ => Going::Falls,
             });
@@ -270,14 +278,6 @@ impl Seen {
         let is_flat = || watched.turned(layout, number, state).abs() * 2.0 * watched.reach < HOPS * watched.reach;
         // Also false without gravity.
         has_landed && is_flat() && goes <= watched.still_speed && self.touched.strayed() + rises < HOPS * watched.reach
-    }
-
-    /// Of one that stands, has never come near its critical angle, and isn't on its way along what carries it: it has `slid` by much
-    /// less than `least` (m).
-    pub(super) fn trembles(&self, slid: Option<f64>, least: f64) -> Option<Going> {
-        let stands = self.part.is_some_and(|part| part < ROCKED);
-        let stays = slid.is_some_and(|slid| slid.abs() < 0.1 * least);
-        (stands && stays).then_some(Going::Trembles)
     }
 
     /// Whether it has only moved with what carries it: neither slid by a tenth of `least` (m), nor turned against it, nor flown.

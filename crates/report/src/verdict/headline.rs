@@ -1,7 +1,7 @@
 //! What became of a scene, in a sentence.
 
 use super::carrier::{Driven, driven_below};
-use super::{BodyVerdict, Fate, Going, Side};
+use super::{BodyVerdict, Fate, Going, Side, many};
 use crate::all_digits::{all_digits, with_all_digits};
 use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
@@ -24,7 +24,7 @@ pub(crate) fn headline(
         few if few.len() <= FEW => {
             few.iter().map(|of| format!("`{}` {}", of.body, one(scene, of, state.t))).collect::<Vec<_>>().join("; ")
         }
-        many => all(scene, many, state.t),
+        many => many::all(scene, many, state.t),
     };
     let borne = beams.iter().filter_map(|beam| Some((beam.part_of_yield_strength?, beam)));
     if let Some((part, beam)) = borne.max_by(|a, b| a.0.total_cmp(&b.0)) {
@@ -79,7 +79,7 @@ fn digits(x: f64) -> String {
     all_digits(x, 3)
 }
 
-fn time(t: f64) -> String {
+pub(super) fn time(t: f64) -> String {
     format!("t = {}", with_all_digits(t, "s", 4))
 }
 
@@ -95,7 +95,7 @@ fn turns(phi: f64) -> String {
 }
 
 /// What became of a block up to the time `end` (s), after its name.
-fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
+pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     let at = of.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
     let way = of.way.map_or("", |way| way.word());
     let largest = of.share().filter(|part| *part >= super::ROCKED);
@@ -108,7 +108,8 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     let by = |way: f64| format!("{} {}", like(way.abs(), far, "m"), direction(scene, way).way);
     let slid = of.slid.map_or_else(String::new, |slid| match of.farthest {
         None => format!("slid by {}", by(slid)),
-        Some(farthest) if !has_slid(scene, of) => format!("slid {}, then back to its start", by(farthest)),
+        Some(farthest) if of.elsewhere.is_some() => format!("slid {}, then {}", by(farthest), by(slid - farthest)),
+        Some(farthest) if !is_told(scene, of, slid) => format!("slid {}, then back to its start", by(farthest)),
         Some(farthest) => {
             let side = direction(scene, slid).side;
             // What ends on the other side, farther from its start than it was before, isn't back there.
@@ -116,10 +117,13 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             format!("slid {}, then {back}to {} {side} its start", by(farthest), like(slid.abs(), far, "m"))
         }
     });
+    let slid = slid + &beside_slid(scene, of);
     // Angles count from what carries it, in plots from the horizontal.
     let against = of.against.as_ref().map_or_else(String::new, |what| format!(" against {what}"));
     let beside = |text: String| if largest.is_empty() { text } else { format!("{text} ({largest})") };
-    let tumbled = of.tumbled.map(|turn| format!("tumbled by {}, then ", turns(turn.abs())));
+    // What tumbles slides meanwhile, and after that.
+    let then = if of.what == Fate::Slid && of.rests_from.is_some() { "" } else { "then " };
+    let tumbled = of.tumbled.map(|turn| format!("tumbled by {}, {then}", turns(turn.abs())));
     let moving = if of.is_carried { moving_base(scene, &[of]) } else { "" };
     // Where nothing is said, it rests on its base.
     let side = side_below(of).filter(|_| of.lies_on != Some(Side::Base)).unwrap_or_default();
@@ -181,8 +185,10 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             let reached = of.to_and_fro.unwrap_or_default();
             let still = if of.is_driven || of.still_from.is_none() { String::new() } else { still(scene, of, end) };
             let how = if still.is_empty() { "slides" } else { "slid" };
-            beside(format!("{how} to and fro{on}, {}{still}", up_to(scene, of, reached)))
+            beside(format!("{how} to and fro{on}, {}{}{still}", up_to(scene, of, reached), beside_slid(scene, of)))
         }
+        // Whether it slides or sticks in the last instant says nothing.
+        Fate::Slid if of.is_driven => beside(format!("{slid}{}", moving_base(scene, &[of]))),
         Fate::Slid if of.still_from.is_some() => beside(format!("{slid}{}", still(scene, of, end))),
         Fate::Slid => beside(format!("slides on, {slid} so far")),
         Fate::Rocks if of.turns_with.is_some() => {
@@ -201,26 +207,27 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         Fate::Rocks => {
             let peak =
                 of.last_peak.map_or_else(String::new, |peak| format!(", last peak {}{against}{at}", angle(peak)));
-            let drift = of.slid.is_some_and(|_| has_slid(scene, of));
-            let drift = if drift { format!(", {slid}") } else { String::new() };
+            let drift = if of.has_slid { format!(", {slid}") } else { String::new() };
             beside(format!("rocks on{peak}{drift}"))
         }
         Fate::Moves if of.still_from == Some(0.0) && scene.settles_at() < end => {
             beside("has been still, too short a run to tell whether it rests".to_owned())
         }
-        Fate::Moves if of.still_from.is_some() && of.going != Some(Going::Rides) => {
+        Fate::Moves if of.still_from.is_some() && of.going.is_none() => {
             beside(format!("moved{}", still(scene, of, end)))
         }
         Fate::Moves => match of.going {
             // What bounces doesn't slide, but may be elsewhere.
-            Some(Going::Bounces) if has_slid(scene, of) => {
-                let off = of.slid.unwrap_or_default();
+            Some(Going::Bounces) if of.displaced.is_some_and(|off| is_told(scene, of, off)) => {
+                let off = of.displaced.unwrap_or_default();
                 let side = direction(scene, off).side;
                 beside(format!("is {}, {} {side} its start", Going::Bounces.word(), with_unit(off.abs(), "m")))
             }
             Some(going) => {
                 let on = of.on_what_moves.map_or_else(String::new, |what| format!(", on {what} that moves"));
-                beside(format!("is {}{on}", going.word()))
+                let rocked = of.stopped_rocking;
+                let rocked = rocked.map_or_else(String::new, |t| format!("stopped rocking at {}, ", time(t)));
+                beside(format!("{rocked}is {}{on}", going.word()))
             }
             None => beside("still moves".to_owned()),
         },
@@ -229,14 +236,17 @@ fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
 }
 
 /// On what blocks stand that have stopped sliding, in words, if the same moves under all of them.
-fn on_what_moves(bodies: &[&BodyVerdict]) -> String {
+pub(super) fn on_what_moves(bodies: &[&BodyVerdict]) -> String {
     let first = bodies.first().and_then(|of| of.on_what_moves);
     let same = first.filter(|_| bodies.iter().all(|of| of.on_what_moves == first));
     same.map_or_else(|| " now, trembling".to_owned(), |what| format!(" on {what} that moves"))
 }
 
 /// Of what tips because nothing held it from the start.
-const PAST_EDGE: &str = ", its mass centre past the edge that it stood on from the start";
+pub(super) const PAST_EDGE: &str = ", its mass centre past the edge that it stood on from the start";
+
+/// What slid in all by this many times as far as the rest of the sentence says has that told.
+const MORE: f64 = 1.1;
 
 /// The slope of what carries blocks, rad, from which on sliding is told as up or down it.
 const STEEP: f64 = 0.01;
@@ -273,7 +283,7 @@ fn still(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
 }
 
 /// On what blocks rest, in words, where that moves by itself: to an onlooker they move with it.
-fn moving_base(scene: &Scene, bodies: &[&BodyVerdict]) -> &'static str {
+pub(super) fn moving_base(scene: &Scene, bodies: &[&BodyVerdict]) -> &'static str {
     let below = |of: &&BodyVerdict| {
         let number = scene.blocks.iter().position(|block| block.name == of.body)?;
         driven_below(scene, number).map(|(driven, _)| driven)
@@ -296,193 +306,33 @@ fn side_below(of: &BodyVerdict) -> Option<String> {
 
 /// How far to the left and to the right of its start a block has been (m), in words, as far as that is told.
 fn up_to(scene: &Scene, of: &BodyVerdict, reached: [f64; 2]) -> String {
-    let block = scene.blocks.iter().find(|block| block.name == of.body);
-    let least = block.map_or(0.0, |block| super::SLID * block.base());
     let far = reached.iter().fold(0.0, |far: f64, way| far.max(way.abs()));
     let told = |way: f64| format!("{} {}", like(way.abs(), far, "m"), direction(scene, way).side);
-    match reached.map(|way| (way.abs() >= least).then(|| told(way))) {
+    match reached.map(|way| is_told(scene, of, way).then(|| told(way))) {
         [Some(left), Some(right)] => format!("up to {left} and {right} its start"),
         [Some(way), None] | [None, Some(way)] => format!("up to {way} its start"),
         [None, None] => "near its start".to_owned(),
     }
 }
 
-fn has_slid(scene: &Scene, of: &BodyVerdict) -> bool {
-    let block = scene.blocks.iter().find(|block| block.name == of.body);
-    block.zip(of.slid).is_some_and(|(block, slid)| slid.abs() >= super::SLID * block.base())
+/// What is told beside a slide, in words: how far it was to and fro in all, where that is more, and where the block is, if hops and flights took it
+/// there.
+fn beside_slid(scene: &Scene, of: &BodyVerdict) -> String {
+    let slid = of.slid.unwrap_or_default();
+    let told = of.farthest.map_or(slid.abs(), |farthest| farthest.abs() + (slid - farthest).abs());
+    let in_all = of.slid_in_all.filter(|in_all| *in_all > MORE * told && is_told(scene, of, in_all - told));
+    let in_all = in_all.map(|in_all| format!("{} in all", with_unit(in_all, "m")));
+    let place = of.elsewhere.map(|at| {
+        let at_start = !is_told(scene, of, at);
+        let where_to = || format!("{} {} its start", with_unit(at.abs(), "m"), direction(scene, at).side);
+        format!("with hops and flights {}", if at_start { "back at its start".to_owned() } else { where_to() })
+    });
+    let told: Vec<String> = in_all.into_iter().chain(place).collect();
+    if told.is_empty() { String::new() } else { format!(" ({})", told.join(", ")) }
 }
 
-/// What became of many blocks up to the time `end` (s).
-fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
-    // What stood on a beam, or rocked as a column before it came to rest, is told as that.
-    let bases: Vec<&BodyVerdict> =
-        verdict.iter().filter(|base| verdict.iter().any(|of| of.turns_with.as_ref() == Some(&base.body))).collect();
-    let is_on =
-        |of: &BodyVerdict, base: &BodyVerdict| of.body == base.body || of.turns_with.as_ref() == Some(&base.body);
-    let in_group = |of: &BodyVerdict| bases.iter().any(|base| is_on(of, base));
-    let usual = || verdict.iter().filter(|of| of.stood_on.is_none() && !(of.what == Fate::Rests && in_group(of)));
-    let of = |fates: &[Fate]| usual().filter(|of| fates.contains(&of.what)).collect::<Vec<_>>();
-    let by_time =
-        |a: &&&BodyVerdict, b: &&&BodyVerdict| a.t.unwrap_or(f64::INFINITY).total_cmp(&b.t.unwrap_or(f64::INFINITY));
-    let mut parts = Vec::new();
-    let total = verdict.len();
-    let mut tell = |found: &[&BodyVerdict], what: &str, first: &str| {
-        let Some(earliest) = found.iter().min_by(by_time) else { return };
-        let count = if found.len() == total { format!("all {total}") } else { found.len().to_string() };
-        let of_all = if parts.is_empty() && found.len() < total { format!(" of {total}") } else { String::new() };
-        let blocks = if parts.is_empty() { " blocks" } else { "" };
-        // "First" is of several.
-        if let ([one], "first") = (found, first) {
-            parts.push(format!("`{}` {}", one.body, self::one(scene, one, end)));
-            return;
-        }
-        let way = earliest.way.map_or_else(String::new, |way| format!(" to the {}", way.word()));
-        let when = match earliest.t {
-            Some(0.0) if earliest.what == Fate::Overturned => " from the start".to_owned(),
-            t => t.map_or_else(String::new, |t| format!(" at {}", time(t))),
-        };
-        // One that is different from the rest is named.
-        if let ([one], "", false) = (found, first, parts.is_empty()) {
-            parts.push(format!("`{}` {what}", one.body));
-            return;
-        }
-        let which = if first.is_empty() { String::new() } else { format!(", {first} `{}`{way}{when}", earliest.body) };
-        parts.push(format!("{count}{of_all}{blocks} {what}{which}"));
-    };
-    let fell = of(&[Fate::Fell]);
-    let collapsed = !fell.is_empty() && of(&[Fate::Fell, Fate::Overturned]).len() > 1;
-    if collapsed {
-        tell(&of(&[Fate::Fell, Fate::Overturned]), "fell or overturned", "first");
-    } else {
-        let (columns, alone): (Vec<_>, Vec<_>) =
-            of(&[Fate::Overturned]).into_iter().partition(|of| of.overturned_with.is_some());
-        for base in columns.iter().filter(|of| of.overturned_with.as_ref() == Some(&of.body)) {
-            let column: Vec<_> =
-                columns.iter().copied().filter(|of| of.overturned_with.as_ref() == Some(&base.body)).collect();
-            let way = base.way.map_or("", |way| way.word());
-            let when = base.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
-            let what = format!("overturned as one column on the base of `{}` to the {way}{when}", base.body);
-            tell(&column, &what, "");
-        }
-        tell(&alone, "overturned", "first");
-        tell(&fell, "fell from its place", "first");
-    }
-    // A single one that overturned has this in its own words.
-    let overturned = of(&[Fate::Overturned]);
-    let told_alone = |block: &&BodyVerdict| {
-        !collapsed
-            && block.overturned_with.is_none()
-            && overturned.iter().filter(|of| of.overturned_with.is_none()).count() == 1
-    };
-    let mut off: Vec<&BodyVerdict> =
-        overturned.iter().copied().filter(|of| of.fell_off.is_some() && !told_alone(of)).collect();
-    while let Some((way, beam)) = off.first().and_then(|of| of.fell_off.clone()) {
-        let (same, others) = off.into_iter().partition::<Vec<_>, _>(|of| of.fell_off == Some((way, beam.clone())));
-        tell(&same, &format!("then fell off the {} end of `{beam}`", way.word()), "");
-        off = others;
-    }
-    let (tipped, left): (Vec<_>, Vec<_>) = of(&[Fate::Left]).into_iter().partition(|of| of.touches_beam);
-    tell(&left, "left their beam", "first");
-    tell(&tipped, "tipped over the end of their beam", "first");
-    tell(&of(&[Fate::Sunk]), "fell below everything", "first");
-    for base in bases.iter().filter(|base| base.what == Fate::Rests) {
-        let column: Vec<_> = verdict.iter().filter(|of| is_on(of, base)).collect();
-        let last = column.iter().filter_map(|of| of.rests_from).fold(0.0, f64::max);
-        let what = format!("rocked as one column on the base of `{}`, came to rest, last at {}", base.body, time(last));
-        tell(&column, &what, "");
-    }
-    let stood: Vec<_> = verdict.iter().filter(|of| of.stood_on.is_some()).collect();
-    tell(&stood, if stood.len() == 1 { "stood on its beam throughout" } else { "stood on their beams throughout" }, "");
-    let resting = || usual().filter(|of| matches!(of.what, Fate::Rests | Fate::Slid) && of.rests_from.is_some());
-    let (stood, moved): (Vec<_>, Vec<_>) = resting().partition(|of| of.rests_from == Some(0.0));
-    // What never moved didn't come to rest.
-    for resting in [moved, stood] {
-        if let Some(last) = resting.iter().filter_map(|of| of.rests_from).reduce(f64::max) {
-            // Of rectangles: other shapes are as often drawn on any of their sides.
-            let is_over = |of: &&&BodyVerdict| matches!(of.lies_on, Some(Side::Left | Side::Right | Side::Top));
-            let slid = (resting.iter().filter(|of| of.what == Fate::Slid).count(), "after sliding");
-            let over = (resting.iter().filter(is_over).count(), "on another side than the base");
-            let told =
-                [slid, over].into_iter().filter(|(count, _)| *count > 0).map(|(count, how)| format!("{count} {how}"));
-            let told = told.collect::<Vec<_>>().join(", ");
-            let how = if told.is_empty() { told } else { format!(" ({told})") };
-            let what = if last == 0.0 {
-                match moving_base(scene, &resting) {
-                    "" => "stood still throughout".to_owned(),
-                    on => format!("stood{on} throughout"),
-                }
-            } else {
-                let when = if resting.len() == 1 { " at" } else { ", last at" };
-                format!("came to rest{how}{when} {}", time(last))
-            };
-            tell(&resting, &what, "");
-        }
-    }
-    let (tipping, rocking): (Vec<_>, Vec<_>) = of(&[Fate::Rocks, Fate::Moves])
-        .into_iter()
-        .filter(|of| of.what == Fate::Rocks || of.tips.is_some())
-        .partition(|of| of.tips.is_some());
-    // Blocks that turn as one rock together, on the base of the lowest.
-    let rocking: Vec<_> = rocking.into_iter().filter(|of| !in_group(of)).collect();
-    let (unheld, tipping): (Vec<_>, Vec<_>) = tipping.into_iter().partition(|of| of.past_edge.is_some());
-    if let [one] = unheld[..] {
-        tell(&[one], &format!("is still tipping{PAST_EDGE}"), "");
-    } else {
-        tell(&unheld, "are still tipping, their mass centres past the edges that they stood on from the start", "");
-    }
-    tell(&tipping, if tipping.len() == 1 { "is still tipping" } else { "are still tipping" }, "");
-    for base in bases.iter().filter(|base| base.what == Fate::Rocks) {
-        let column: Vec<_> = verdict.iter().filter(|of| is_on(of, base)).collect();
-        let how = if base.column.is_some() { "rock on as one column" } else { "turn as one" };
-        tell(&column, &format!("{how} on the base of `{}`", base.body), "");
-    }
-    tell(&rocking, if rocking.len() == 1 { "rocks on" } else { "rock on" }, "");
-    for going in Going::ALL {
-        let these: Vec<_> = usual().filter(|of| of.going == Some(going)).collect();
-        let what = match these.len() {
-            1 => format!("is {}", going.word()),
-            _ => format!("are {}", going.word_of_many()),
-        };
-        tell(&these, &what, "");
-    }
-    let sliding: Vec<_> = of(&[Fate::Slid]).into_iter().filter(|of| of.rests_from.is_none()).collect();
-    let (stopped, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(|of| of.stopped);
-    let stand = if stopped.len() == 1 { "stands" } else { "stand" };
-    tell(&stopped, &format!("slid, and {stand}{}", on_what_moves(&stopped)), "");
-    let shaken = |of: &&BodyVerdict| of.to_and_fro.is_some() && (of.is_driven || of.still_from.is_none());
-    let (to_and_fro, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(shaken);
-    tell(&to_and_fro, if to_and_fro.len() == 1 { "slides to and fro" } else { "slide to and fro" }, "");
-    let (still, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(|of| of.still_from.is_some());
-    tell(&sliding, if sliding.len() == 1 { "slides on" } else { "slide on" }, "");
-    let of_moves: Vec<_> =
-        of(&[Fate::Moves]).into_iter().filter(|of| of.going.is_none() && of.tips.is_none()).collect();
-    let (at_end, moving): (Vec<_>, Vec<_>) = of_moves.into_iter().partition(|of| of.still_from.is_some());
-    let still: Vec<_> = still.into_iter().chain(at_end).collect();
-    tell(&still, if still.len() == 1 { "stands still at the end" } else { "stand still at the end" }, "");
-    tell(&moving, if moving.len() == 1 { "still moves" } else { "still move" }, "");
-    let others = || {
-        let stayed = verdict.iter().filter(|of| !matches!(of.what, Fate::Fell | Fate::Overturned));
-        let stayed = stayed.filter(|of| of.past_edge.is_none());
-        stayed.map(|of| {
-            let base = bases.iter().find(|base| is_on(of, base)).filter(|base| base.column.is_some());
-            base.map_or((of, of.max_phi_over_alpha), |base| (base, base.column))
-        })
-    };
-    let known = others().filter_map(|(of, part)| Some((of, part?)));
-    let largest = known.max_by(|a, b| a.1.total_cmp(&b.1));
-    let of_all = parts.len() == 1 && others().all(|(_, part)| part.is_some());
-    let mut text = parts.join("; ");
-    if let Some((of, largest)) = largest.filter(|(_, largest)| *largest >= super::ROCKED) {
-        let whose = match of_all {
-            true if rocking.is_empty() && matches!(bases[..], [base] if base.column.is_some()) => "the column",
-            true => "all",
-            false if !fell.is_empty() => "those that neither fell nor overturned",
-            false if verdict.iter().any(|of| of.what == Fate::Overturned) => "those that didn't overturn",
-            // Those of which it is unknown have none.
-            false => "all",
-        };
-        let of = if whose == "the column" { String::new() } else { format!(" (`{}`)", of.body) };
-        text.push_str(&format!("; largest φ/α of {whose} {}{of}", part(largest)));
-    }
-    if collapsed { format!("collapsed: {text}") } else { text }
+/// Whether a way along what carries a block, m, is so long that it is told.
+fn is_told(scene: &Scene, of: &BodyVerdict, way: f64) -> bool {
+    let block = scene.blocks.iter().find(|block| block.name == of.body);
+    block.is_some_and(|block| way.abs() >= super::SLID * block.base())
 }

@@ -32,20 +32,21 @@ impl Seen {
             (alone, with_column) => alone.or(with_column),
         };
         let place = watched.place(layout, number, state);
-        let slid = self.stood.zip(place).map(|(from, to)| to - from).filter(|_| overturned.is_none() && fell.is_none());
+        let stays_up = overturned.is_none() && fell.is_none();
+        let displaced = self.stood.zip(place).map(|(from, to)| to - from).filter(|_| stays_up);
+        let slides = Some(&self.slides).filter(|_| stays_up && self.touched.any());
         let least = SLID * watched.base();
-        let has_slid = slid.is_some_and(|slid| slid.abs() >= least);
-        let to_and_fro = slid.is_some_and(|slid| self.slides.is_to_and_fro(slid));
+        let has_slid = slides.is_some_and(|slides| slides.most() >= least);
+        let to_and_fro = slides.filter(|slides| slides.is_to_and_fro());
         // One that has come down on a corner and can't turn over any more rocks, though it hasn't settled yet.
         let settling = self.settling.filter(|settling| state.t - settling.since >= FLAT * watched.still_time);
         let part = self.part.or(settling.map(|settling| settling.part));
         let lately = |last: f64| state.t - last < FLAT * watched.still_time;
         let rocked = match settling {
             Some(settling) if self.part.is_none() => settling.rocked.is_some_and(lately),
-            _ => part.is_some_and(|part| part >= ROCKED),
+            // What swings no more, though it isn't still, stands, or slides, or leans on others in a pile that trembles.
+            _ => part.is_some_and(|part| part >= ROCKED) && self.swung.is_none_or(|(last, _)| lately(last)),
         };
-        // What came down and slid off since doesn't rock any more.
-        let only_slides = has_slid && self.rocked.is_some_and(|last| !lately(last));
         let peak = rocking.and_then(|monitor| {
             let of_crossings = || monitor.peaks().last().copied();
             let largest = || Some(monitor.extreme()).filter(|peak| peak.phi != 0.0);
@@ -75,18 +76,17 @@ impl Seen {
             (None, None, None, Some(t)) if has_slid => (Fate::Slid, Some(t), None),
             (None, None, None, Some(t)) => (Fate::Rests, Some(t), None),
             _ if bounces => (Fate::Moves, None, None),
-            _ if rocked && !only_slides && !stands_on_both => (Fate::Rocks, peak.map(|peak| peak.t), None),
-            _ if has_slid || to_and_fro => (Fate::Slid, None, None),
+            _ if rocked && !stands_on_both => (Fate::Rocks, peak.map(|peak| peak.t), None),
+            _ if has_slid => (Fate::Slid, None, None),
             _ => (Fate::Moves, None, None),
         };
         let lies_on = rests
             .and(watched.outline.as_ref())
             .and_then(|outline| Side::below(block, outline, self.angle - watched.slope(&state.q)));
         let leans = rests.is_some() && lies_on.is_none() && watched.outline.is_some();
-        let tumbled = match block.placement {
-            Placement::Free { angle, .. } => self.began.map(|_| self.angle - angle),
-            Placement::On { .. } => None,
-        };
+        let turned = self.angle - self.from;
+        let is_free = matches!(block.placement, Placement::Free { .. });
+        let tumbled = self.began.filter(|_| is_free && what != Fate::Overturned).map(|_| turned);
         let tilt = layout.tilt(number, &state.q);
         let turns_on = |monitor: &&RockingMonitor| {
             let way = Way::of(tilt);
@@ -98,23 +98,29 @@ impl Seen {
             monitor.extreme().phi.abs() >= BEGAN_TO_TIP * alpha
         };
         let not_upright = rocking.filter(|monitor| [Fate::Rocks, Fate::Moves].contains(&what) && monitor.count() == 0);
+        // One that stands on a beam that rings, or in a pile that trembles, may be still for an instant.
+        let has_stopped = self.slides.went().is_some_and(|last| !lately(last));
+        let has_stood = part.is_some() && !rocked && has_stopped && self.swung.is_some_and(|(last, _)| !lately(last));
         let moves = what == Fate::Moves && self.still.is_none();
         let rides = what == Fate::Moves && self.rides(watched, least);
         let going = moves.then(|| self.going(watched, layout, number, state)).flatten();
         let going = going.or(rides.then_some(Going::Rides));
         let going = going.or((moves && stands_on_both && rocked).then_some(Going::Vibrates));
-        // By its way along what carries it, as that may move under it. Where that is shaken, it may slide on.
+        // Where what carries it is shaken, it may slide on.
         let stopped = what == Fate::Slid
             && rests.is_none()
             && self.still.is_none()
             && state.t >= watched.driven_until
-            && self.went.is_some_and(|(last, _)| !lately(last));
+            && has_stopped;
         let turning = not_upright.filter(|_| what == Fate::Rocks || (moves && going.is_none())).filter(turns_on);
         // What stands on a beam that bends slowly turns with it.
         let turns = |_: &&RockingMonitor| what == Fate::Rocks || part.is_some_and(|part| part >= BEGAN_TO_TIP);
         let tips = turning.filter(turns).filter(began_to_tip).map(|_| Way::of(tilt));
         let on_its_way = not_upright.filter(|_| what == Fate::Rocks || tips.is_some()).filter(began_to_tip);
-        let trembles = || self.trembles(slid, least).filter(|_| moves && turning.is_none());
+        let stands = moves && part.is_some() && !rocked && (has_stopped || self.slides.most() < 0.1 * least);
+        let for_an_instant = self.still.is_some_and(|since| state.t - since < watched.still_time);
+        let stands = stands || (what == Fate::Moves && has_stood && for_an_instant);
+        let trembles = || (stands && turning.is_none()).then_some(Going::Trembles);
         let going = going.or_else(trembles);
         let is_here = matches!(what, Fate::Rests | Fate::Moves) && rests != Some(0.0) && self.stands_from == Some(0.0);
         let beam = |when: bool| watched.carrier.beam().filter(|_| when).map(|beam| layout.beams[beam].name.clone());
@@ -128,10 +134,16 @@ impl Seen {
             rests_from: rests,
             leans_at: leans.then_some(tilt),
             lies_on,
-            farthest: slid.and_then(|slid| self.slides.farthest(slid, least)),
-            to_and_fro: to_and_fro.then(|| self.slides.reached()),
+            slid: slides.map(|slides| slides.at()),
+            slid_in_all: slides.map(|slides| slides.in_all()),
+            farthest: slides.and_then(|slides| slides.farthest(least)),
+            displaced,
+            has_slid,
+            elsewhere: displaced.filter(|at| {
+                self.stands_from == Some(0.0) && slides.is_some_and(|slides| (at - slides.at()).abs() >= least)
+            }),
+            to_and_fro: to_and_fro.map(|slides| slides.reached()),
             is_driven: state.t < watched.driven_until,
-            slid,
             stopped,
             speed: (what == Fate::Slid && rests.is_none() && self.still.is_none() && !stopped).then(|| {
                 let [vx, vy, _] = watched.velocity(layout, number, state);
@@ -142,27 +154,27 @@ impl Seen {
             against: watched.against(layout, number, &state.q),
             still_from: self.still.filter(|_| rests.is_none()),
             stands_from: since,
-            turned: self
-                .began
-                .filter(|_| what == Fate::Overturned)
-                .map(|began| (self.angle - if watched.on.is_some() { 0.0 } else { began }).abs())
-                .filter(|turn| *turn >= TUMBLED),
+            turned: (what == Fate::Overturned && turned.abs() >= TUMBLED).then_some(turned.abs()),
             is_carried: rests.is_some() && {
                 let q = &state.q[layout.blocks[number].range.clone()];
                 let [vx, vy, spin] = watched.carrier.base_velocity([q[0], q[1]], layout, state);
                 state.t < watched.driven_until || vx.hypot(vy) + watched.reach * spin.abs() > watched.still_speed
             },
-            tumbled: tumbled.filter(|turn| turn.abs() >= TUMBLED && what != Fate::Overturned),
+            tumbled: tumbled.filter(|turn| turn.abs() >= TUMBLED),
             on_its_way: on_its_way.map(|_| tilt),
             on_what_moves: watched.carrier.word().filter(|_| {
                 let q = &state.q[layout.blocks[number].range.clone()];
-                let [vx, vy, _] = watched.carrier.velocity([q[0], q[1]], layout, state);
+                let [vx, vy, _] = watched.carrier.velocity([q[0], q[1]], None, layout, state);
                 let moves = state.t < watched.driven_until || vx.hypot(vy) > watched.still_speed;
                 // What rides on a driven block is told to stand on it.
                 let is_told = going == Some(Going::Rides) && watched.carrier.is_by_block();
                 (stopped || going.is_some_and(Going::stays)) && moves && !is_told
             }),
             going,
+            stopped_rocking: self
+                .swung
+                .map(|(last, _)| last)
+                .filter(|_| going == Some(Going::Trembles) && has_stood && part.is_some_and(|part| part >= ROCKED)),
             tips,
             stood_on: beam(is_here && self.never_moved(watched, least)),
             left_beam: beam(what == Fate::Left),

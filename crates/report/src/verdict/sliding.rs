@@ -1,13 +1,23 @@
-//! How a block has slid along what carries it since it began to stand (`docs/verdict.md`).
+//! How a block has slid: its points while they press on what holds it from below (`docs/verdict.md`).
 
+use super::watch::Watch;
+use super::{FLAT, Fates, SLID};
+use crate::contacts;
 use serde::{Deserialize, Serialize};
+use teeter_integrator::StepReport;
 
 /// What has slid on for this many times its longest way to or fro goes its own way.
 const USUAL: f64 = 2.0;
 
-/// The way that a block has slid.
+/// The way that a block has slid, from the start of the run, to the right positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Slides {
+    /// How far it is by all of its slides, m.
+    at: f64,
+    /// How far it has slid in all, to and fro, m.
+    in_all: f64,
+    /// When, s, and where, m, it last had slid on by more than what is still creeps in the time after which it has stopped.
+    went: Option<(f64, f64)>,
     /// The farthest from its start that it has been to the left and to the right, m.
     reached: [f64; 2],
     /// The farthest to the left and to the right since it last turned round, m.
@@ -23,8 +33,12 @@ pub(super) struct Slides {
 }
 
 impl Slides {
-    /// It is now at a place, m, to the right of its start; `least` (m) is how far it has to go to be told.
-    pub(super) fn go_to(&mut self, at: f64, least: f64) {
+    /// It slides by so much, m, up to the time `t` (s); `least` (m) is how far it has to go to be told, `creeps` (m) what doesn't count as sliding on.
+    fn go(&mut self, by: f64, t: f64, least: f64, creeps: f64) {
+        self.at += by;
+        self.in_all += by.abs();
+        let at = self.at;
+        self.went = self.went.filter(|(_, went)| (at - went).abs() < creeps).or(Some((t, at)));
         for [left, right] in [&mut self.reached, &mut self.since_turn] {
             (*left, *right) = (left.min(at), right.max(at));
         }
@@ -42,9 +56,24 @@ impl Slides {
         (self.sense, self.since_turn) = (sense, [at; 2]);
     }
 
-    /// Whether it slides to and fro: it slid to one side, back, and on again, and since then not farther than is usual for it, to where it is (m).
-    pub(super) fn is_to_and_fro(&self, at: f64) -> bool {
-        self.turns >= 2 && (at - self.turned_at).abs() <= USUAL * self.longest
+    /// How far it is by all of its slides, m.
+    pub(super) fn at(&self) -> f64 {
+        self.at
+    }
+
+    /// How far it has slid in all, to and fro, m.
+    pub(super) fn in_all(&self) -> f64 {
+        self.in_all
+    }
+
+    /// When it last slid on, s; `None` before it touched anything.
+    pub(super) fn went(&self) -> Option<f64> {
+        self.went.map(|(t, _)| t)
+    }
+
+    /// Whether it slides to and fro: it slid to one side, back, and on again, and since then not farther than is usual for it.
+    pub(super) fn is_to_and_fro(&self) -> bool {
+        self.turns >= 2 && (self.at - self.turned_at).abs() <= USUAL * self.longest
     }
 
     /// The farthest to the left and to the right of its start that it has been, m.
@@ -57,11 +86,42 @@ impl Slides {
         self.reached[1].max(-self.reached[0])
     }
 
-    /// Where it turned, the farther of two, if it has slid back by more than `least` (m) from there to where it is, `slid` (m).
-    pub(super) fn farthest(&self, slid: f64, least: f64) -> Option<f64> {
-        let back = |reached: &f64| (reached - slid).abs();
+    /// Where it turned, the farther of two, if it has slid back by more than `least` (m) from there.
+    pub(super) fn farthest(&self, least: f64) -> Option<f64> {
+        let back = |reached: &f64| (reached - self.at).abs();
         let farther = self.reached.into_iter().filter(|reached| reached.abs() > least && back(reached) > least);
         farther.max_by(|a, b| a.abs().total_cmp(&b.abs()))
+    }
+}
+
+impl Fates {
+    /// Takes in how blocks slide in a step: of the contacts that press, as `contacts.csv` has their slip, those that hold a block from below count,
+    /// each by its part of what they hold.
+    pub(super) fn slide(&mut self, watch: &Watch, step: &StepReport<'_, 2>) {
+        for part in step.active().filter(|part| part.duration > 0.0) {
+            for contact in part.contacts.iter().filter(|contact| contact.p[0] > 0.0) {
+                let slip = contacts::slip(contact, part.duration, part.balance);
+                let [normal, along] = [0, 1].map(|row| contact.frame.row(row));
+                for (side, sign) in contact.sides.iter().zip([1.0, -1.0]) {
+                    let number = side.body.0 as usize;
+                    let (Some(seen), Some(watched)) = (self.blocks.get_mut(number), watch.blocks.get(number)) else {
+                        continue;
+                    };
+                    let [x, y] = watched.up;
+                    let holds = contact.p[0] * sign * (normal[0] * x + normal[1] * y);
+                    if holds > 0.0 {
+                        let to_the_right = if along[0] * y - along[1] * x < 0.0 { -sign } else { sign };
+                        let [held, slid] = &mut seen.sliding;
+                        (*held, *slid) = (*held + holds, *slid + holds * to_the_right * slip);
+                    }
+                }
+            }
+            for (seen, watched) in self.blocks.iter_mut().zip(&watch.blocks).filter(|(seen, _)| seen.sliding[0] > 0.0) {
+                let [held, slid] = std::mem::take(&mut seen.sliding);
+                let creeps = FLAT * watched.still_time * watched.still_speed;
+                seen.slides.go(slid / held, part.end, SLID * watched.base(), creeps);
+            }
+        }
     }
 }
 
@@ -71,7 +131,7 @@ mod tests {
 
     fn along(places: &[f64]) -> Slides {
         let mut slides = Slides::default();
-        places.iter().for_each(|at| slides.go_to(*at, 1.0));
+        places.iter().for_each(|at| slides.go(at - slides.at, 0.0, 1.0, 0.0));
         slides
     }
 
@@ -86,14 +146,14 @@ mod tests {
             let slides = along(&places);
             assert_eq!((slides.turns, slides.reached), (turns, reached), "{places:?}");
         }
-        assert!(along(&[2.0, 0.5, 2.0]).is_to_and_fro(2.0) && !along(&[2.0, -9.0]).is_to_and_fro(-9.0));
-        assert!(!along(&[2.0, 0.5, 2.0, 9.0]).is_to_and_fro(9.0), "it goes on to the right");
+        assert!(along(&[2.0, 0.5, 2.0]).is_to_and_fro() && !along(&[2.0, -9.0]).is_to_and_fro());
+        assert!(!along(&[2.0, 0.5, 2.0, 9.0]).is_to_and_fro(), "it goes on to the right");
     }
 
     #[test]
     fn the_farther_of_two_turns_is_told_if_it_came_back_from_there() {
-        assert_eq!(along(&[-3.0, 4.0, 1.0]).farthest(1.0, 1.0), Some(4.0));
-        assert_eq!(along(&[-3.0, 4.0]).farthest(4.0, 1.0), Some(-3.0));
-        assert_eq!(along(&[4.0, 3.5]).farthest(3.5, 1.0), None);
+        assert_eq!(along(&[-3.0, 4.0, 1.0]).farthest(1.0), Some(4.0));
+        assert_eq!(along(&[-3.0, 4.0]).farthest(1.0), Some(-3.0));
+        assert_eq!(along(&[4.0, 3.5]).farthest(1.0), None);
     }
 }

@@ -221,7 +221,8 @@ impl Seen {
         if state.t - settled.since >= SETTLED * watched.still_time {
             // Found anew from this angle, as it will be after a pause.
             (self.began, self.settling, self.stance) = (Some(settled.angle), None, KnownStance(None));
-            (self.part, self.rocked) = (Some(settled.part), settled.rocked);
+            self.part = Some(settled.part);
+            self.swung = settled.rocked.map(|t| (t, angle - slope));
             self.stands_from = Some(settled.since);
             self.stood = watched.place(layout, number, state);
         }

@@ -41,6 +41,8 @@ pub(super) struct Watched {
     pub(super) mass: f64,
     pub(super) inertia: f64,
     pub(super) gravity: f64,
+    /// Against gravity; the y axis without.
+    pub(super) up: [f64; 2],
     /// What it was placed on.
     pub(super) on: Option<SupportingBody>,
     /// Whether its motion is prescribed: nothing becomes of it.
@@ -77,6 +79,7 @@ impl Watch {
                 mass: of.map_or(0.0, |of| of.mass),
                 inertia: of.map_or(0.0, |of| of.inertia),
                 gravity,
+                up: if gravity > 0.0 { scene.gravity.map(|along| -along / gravity) } else { [0.0, 1.0] },
                 on: match block.placement {
                     Placement::On { support, .. } => Some(support),
                     Placement::Free { .. } => None,
@@ -164,12 +167,16 @@ impl Watched {
         self.carrier.height([q[0], q[1]], layout, &state.q)
     }
 
+    /// Where its feet are, x, m, at its own coordinates.
+    fn feet_at(&self, q: &[f64]) -> Option<[f64; 2]> {
+        let (sin, cos) = q[2].sin_cos();
+        self.feet.map(|feet| feet.map(|[x, y]| q[0] + cos * x - sin * y))
+    }
+
     /// How high its mass centre is over what carries it, m: of what stands on a beam over where its feet, or its middle on a hump, would be.
     pub(super) fn clearance(&self, layout: &Layout, number: usize, state: &State) -> f64 {
         let q = &state.q[layout.blocks[number].range.clone()];
-        let (sin, cos) = q[2].sin_cos();
-        let feet = self.feet.map(|feet| feet.map(|[x, y]| q[0] + cos * x - sin * y));
-        self.carrier.clearance([q[0], q[1]], feet, self.has_face, layout, &state.q)
+        self.carrier.clearance([q[0], q[1]], self.feet_at(q), self.has_face, layout, &state.q)
     }
 
     /// Where its base stands along what carries it, m: put flat about the foot on which it is tilted.
@@ -208,7 +215,9 @@ impl Watched {
     pub(super) fn velocity(&self, layout: &Layout, number: usize, state: &State) -> [f64; 3] {
         let range = layout.blocks[number].range.clone();
         let (q, v) = (&state.q[range.clone()], &state.v[range]);
-        let carrier = self.carrier.velocity([q[0], q[1]], layout, state);
+        // On another side than its base it doesn't stand on its feet.
+        let feet = self.feet_at(q).filter(|[left, right]| right - left > 0.5 * self.base());
+        let carrier = self.carrier.velocity([q[0], q[1]], feet, layout, state);
         [v[0] - carrier[0], v[1] - carrier[1], v[2] - carrier[2]]
     }
 

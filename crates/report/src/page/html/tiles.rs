@@ -4,7 +4,7 @@ use super::{scientific, with_code, with_prefix_of};
 use crate::all_digits::{all_digits, with_all_digits};
 use crate::page::content;
 use crate::page::panels::{Measure, Units};
-use crate::verdict::{BodyVerdict, Fate, ROCKED, part};
+use crate::verdict::{BodyVerdict, ROCKED, part};
 use crate::{Summary, shortest, with_digits};
 use serde_json::Value;
 use std::fmt::Write;
@@ -86,9 +86,9 @@ fn as_told(x: f64, unit: &str) -> String {
     with_digits(x, unit, 4).replace('-', "\u{2212}")
 }
 
-/// The tiles of the block that slid farthest, of those that didn't overturn or fall: how far, and how fast it slides on.
+/// The tiles of the block that slid farthest, of those that didn't overturn or fall, whatever else they do: how far, and how fast it slides on.
 fn sliding(summary: &Summary) -> Vec<(String, String, String)> {
-    let slid = summary.verdict.iter().enumerate().filter(|(_, of)| of.what == Fate::Slid);
+    let slid = summary.verdict.iter().enumerate().filter(|(_, of)| of.has_slid);
     let far =
         |of: &BodyVerdict| [of.slid, of.farthest].into_iter().flatten().fold(0.0, |far: f64, way| far.max(way.abs()));
     let Some((number, of)) = slid.max_by(|a, b| far(a.1).total_cmp(&far(b.1))) else { return Vec::new() };
@@ -99,10 +99,12 @@ fn sliding(summary: &Summary) -> Vec<(String, String, String)> {
     let farthest = farthest.filter(|farthest| slid.is_none_or(|slid| *farthest > slid));
     // Where something that goes to and fro is at the end says little.
     let slid = slid.filter(|_| of.to_and_fro.is_none() || farthest.is_none());
+    let in_all = of.slid_in_all.filter(|_| of.to_and_fro.is_some());
     let whose = if summary.verdict.len() > 1 { format!(" ({})", of.body) } else { String::new() };
     let tiles = [
         tile("slid", format!("Slid by{whose}"), slid, "m"),
         tile("farthest", format!("Slid at most{whose}"), farthest, "m"),
+        tile("slid_in_all", format!("Slid in all{whose}"), in_all, "m"),
         tile("speed", format!("Speed at the end{whose}"), of.speed, "m/s"),
     ];
     tiles.into_iter().flatten().collect()
