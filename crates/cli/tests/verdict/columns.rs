@@ -84,3 +84,34 @@ fn a_stack_that_turns_over_in_one_goes_as_one_column() {
         assert!((told - passed).abs() < 0.03, "{acceleration}: {told}, {passed}");
     }
 }
+
+#[test]
+fn parts_of_a_stack_that_turn_over_one_after_the_other_are_told_in_that_order() {
+    let block = |name: &str, width: u32, rest: &str| {
+        format!(
+            "[block.{name}]\nmaterial = 'm'\nwidth = '{width} cm'\nheight = '60 cm'\ndepth = '50 cm'\nat = '0 m'\n{rest}\n"
+        )
+    };
+    let text = format!(
+        "[time]\nend = '3 s'\nstep = '1 ms'\n[ground]\nmotion = {{ acceleration = ['6 m/s^2', '0 m/s^2'], signal = 'shake' }}\n\
+         [signal.shake]\nshape = 'one-sine'\nstart = '0.2 s'\nperiod = '0.9 s'\n[material.m]\ndensity = '2700 kg/m^3'\n{}{}{}\
+         [contact.floor]\nbetween = ['*', 'ground']\nfriction = 0.7\n[contact.joints]\nbetween = ['*', '*']\nfriction = 0.7\n",
+        block("d", 50, "on = 'ground'\nrepeat = { count = 3, stacked = true }"),
+        block("u", 32, "on = 'd-3'"),
+        block("v", 32, "on = 'u'")
+    );
+    let ran = written(&folder("verdict-two-parts"), &text);
+    let (t, u) = (ran.column("t"), ran.column("u.phi"));
+    // Two of 60 cm on each other.
+    let alpha = (0.32_f64 / 1.2).atan();
+    let passed = t[u.iter().rposition(|phi| *phi < alpha).unwrap()];
+    let at = ran.verdict("u")["overturned_at"].as_f64().unwrap();
+    assert!((at - passed).abs() < 0.03, "{at}, {passed}");
+    let headline = ran.summary["headline"].as_str().unwrap();
+    let (first, second) = headline.split_once("; ").unwrap();
+    assert!(
+        first.starts_with("2 of 5 blocks overturned as one column on the base of `u` to the left at t = "),
+        "{headline}"
+    );
+    assert!(second.starts_with("3 overturned as one column on the base of `d-1` to the right at t = "), "{headline}");
+}

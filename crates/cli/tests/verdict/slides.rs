@@ -1,6 +1,6 @@
 //! What slides: how far, which way, and how it ends.
 
-use super::{FLOOR, ROCKER, Ran, folder, scene, what};
+use super::{FLOOR, ROCKER, Ran, folder, scene, what, written};
 use std::path::Path;
 
 /// Stones that lie on others without being placed `on` them slide along those, not along their neighbours.
@@ -217,4 +217,16 @@ fn what_is_thrown_and_then_slides_has_slid_since_it_landed() {
         headline.starts_with("`b` slid by 49") && headline.contains(" mm to the right and came to rest"),
         "{headline}"
     );
+}
+
+#[test]
+fn without_gravity_there_is_no_slope_to_slide_down() {
+    let text = "[world]\ngravity = '0 m/s^2'\n[material.a]\ndensity = '2000 kg/m^3'\n[time]\nend = '1 s'\nstep = '1 ms'\n[ground]\n[block.b]\n\
+                material = 'a'\nwidth = '20 cm'\nheight = '6 cm'\ndepth = '10 cm'\non = 'ground'\nat = '0 m'\nvelocity = ['1 m/s', '0 m/s']\n\
+                [force.f]\non = 'b'\nforce = ['0 N', '-10 N']\n[contact.c]\nbetween = ['b', 'ground']\nfriction = 0.4\n";
+    let ran = written(&folder("verdict-weightless"), text);
+    let x = ran.column("b.x");
+    assert!((ran.verdict("b")["slid"].as_f64().unwrap() - (x[x.len() - 1] - x[0])).abs() < 1e-9);
+    let headline = ran.summary["headline"].as_str().unwrap();
+    assert!(headline.starts_with("`b` slid") && headline.contains("to the right"), "{headline}");
 }

@@ -262,7 +262,8 @@ struct Direction {
 /// In which direction something slid along what carries it.
 fn direction(scene: &Scene, slid: f64) -> Direction {
     let ground = scene.ground.as_ref().filter(|ground| ground.profile.is_none() && scene.beams.is_empty());
-    let [across, down] = [scene.gravity[0], -scene.gravity[1]];
+    // Without gravity nothing slopes: not −0, whose angle is π.
+    let [across, down] = [scene.gravity[0], 0.0 - scene.gravity[1]];
     let slope = ground.map_or(0.0, |ground| ground.incline - across.atan2(down));
     let (way, side) = match (slope.abs() >= STEEP, slid < 0.0) {
         (true, _) if slope * slid > 0.0 => ("up the slope", "above"),

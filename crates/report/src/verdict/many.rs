@@ -48,15 +48,19 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
     } else {
         let (columns, alone): (Vec<_>, Vec<_>) =
             of(&[Fate::Overturned]).into_iter().partition(|of| of.overturned_with.is_some());
+        let mut falls = vec![(alone, "overturned".to_owned(), "first")];
         for base in columns.iter().filter(|of| of.overturned_with.as_ref() == Some(&of.body)) {
             let column: Vec<_> =
                 columns.iter().copied().filter(|of| of.overturned_with.as_ref() == Some(&base.body)).collect();
             let way = base.way.map_or("", |way| way.word());
             let when = base.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
             let what = format!("overturned as one column on the base of `{}` to the {way}{when}", base.body);
-            tell(&column, &what, "");
+            falls.push((column, what, ""));
         }
-        tell(&alone, "overturned", "first");
+        // In the order in which they did.
+        let first = |of: &[&BodyVerdict]| of.iter().filter_map(|of| of.t).fold(f64::INFINITY, f64::min);
+        falls.sort_by(|a, b| first(&a.0).total_cmp(&first(&b.0)));
+        falls.iter().for_each(|(these, what, which)| tell(these, what, which));
         tell(&fell, "fell from its place", "first");
     }
     // A single one that overturned has this in its own words.
