@@ -280,10 +280,9 @@ impl Fates {
                 let line = watch.slope(number, layout, state);
                 let (tilt, least) = (q[2] - line, 0.5 * ROCKED * (stance.left.top - stance.right.top));
                 seen.swung = seen.swung.filter(|(_, at)| (tilt - at).abs() < least).or(Some((t, tilt)));
-                if let Some(part) = stance.part(q[2], line) {
-                    if seen.part.is_none_or(|most| part > most) {
-                        (seen.part, seen.joint) = (Some(part), layout.tilt(number, &state.q).abs());
-                    }
+                let largest = stance.part(q[2], line).filter(|part| seen.part.is_none_or(|most| *part > most));
+                if largest.is_some() {
+                    (seen.part, seen.joint) = (largest, layout.tilt(number, &state.q).abs());
                 }
                 let way = Way::of(q[2] - stance.flat);
                 let edge = stance.edge(way);
