@@ -123,6 +123,8 @@ struct Seen {
     lean: Option<Lean>,
     /// Since when it is still, s.
     still: Option<f64>,
+    /// Since when it is also still relative to the supports of the beam that carries it, or to what else does, s.
+    unmoved: Option<f64>,
     /// How long it was still at most between two motions, s; `None` before the first.
     paused: Option<f64>,
     /// Whether its mass centre has been over its beam, and since when it is past an end, s, and which.
@@ -310,6 +312,8 @@ impl Fates {
                 seen.dropped = if drop > watched.thickness { seen.dropped.or(Some(t)) } else { None };
             }
             seen.touched.rise(watched.clearance(layout, number, state));
+            let is_unmoved = watched.speed_over_base(layout, number, state) <= watched.still_speed;
+            seen.unmoved = if is_unmoved { seen.unmoved.or(Some(t)) } else { None };
             let speed = watched.speed(layout, number, state);
             seen.still = if speed <= watched.still_speed {
                 seen.still.or(Some(t))

@@ -115,6 +115,9 @@ pub struct BodyVerdict {
     /// Of one that is shaken where it stands, or hops there: what it stands on, and in the end on other blocks, in words, if that moves at the end.
     #[serde(skip)]
     pub(crate) on_what_moves: Option<&'static str>,
+    /// Since when it, and so what carries it, is at rest over what that stands on, s.
+    #[serde(skip)]
+    pub(crate) unmoved_from: Option<f64>,
     /// The beam on which it stood throughout, of one that has only moved with it.
     #[serde(skip)]
     pub(crate) stood_on: Option<String>,

@@ -190,8 +190,8 @@ impl Carrier {
         matches!(self.root, On::Block(_))
     }
 
-    /// Velocity and angular velocity of what carries a block, as of a rigid body that reaches there: what stands still on it has these.
-    /// A beam has those of the line between the `feet` (x, m), on which the block stands, or else of its tangent where the block is.
+    /// Velocity and angular velocity of what carries a block, where the block is. A beam has those of the line between the `feet` (x, m) on which
+    /// the block stands, as of a rigid body that reaches there: what stands still on it has these; without feet, those of the beam itself.
     pub(super) fn velocity(&self, at: [f64; 2], feet: Option<[f64; 2]>, layout: &Layout, state: &State) -> [f64; 3] {
         match &self.root {
             On::Ground(range) | On::Block(range) => {
@@ -206,14 +206,14 @@ impl Carrier {
                 let bent = |at: f64, values: &[f64]| {
                     place.deflection(&place.beam.shape_clamped(at - x), &values[place.range.clone()])
                 };
-                let line = feet.map(|[left, right]| {
-                    let [from, to] = [left, right].map(|foot| bent(foot, &state.v).w);
-                    let spin = (to - from) / (right - left);
-                    (from + spin * (at[0] - left), spin)
-                });
-                let rate = bent(at[0], &state.v);
-                let (rise, spin) = line.unwrap_or((rate.w, rate.slope));
-                [vx - spin * (at[1] - y - bent(at[0], &state.q).w), vy + rise, spin]
+                let Some([left, right]) = feet else {
+                    let rate = bent(at[0], &state.v);
+                    return [vx, vy + rate.w, rate.slope];
+                };
+                let [from, to] = [left, right].map(|foot| bent(foot, &state.v).w);
+                let spin = (to - from) / (right - left);
+                let height = at[1] - y - bent(at[0], &state.q).w;
+                [vx - spin * height, vy + from + spin * (at[0] - left), spin]
             }
             On::Fixed => [0.0; 3],
         }

@@ -159,7 +159,7 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         Fate::Sunk => format!("fell below everything that could hold it{at}"),
         Fate::Fell => format!("fell from its place{at}{then_rested}"),
         Fate::Rests | Fate::Moves if of.stood_on.is_some() => {
-            let since = of.rests_from.map_or_else(String::new, |t| format!(", at rest from {}", time(t)));
+            let since = of.unmoved_from.map_or_else(String::new, |t| format!(", at rest from {}", time(t)));
             format!("stood on `{}` throughout{since}", of.stood_on.as_deref().unwrap_or_default())
         }
         Fate::Rests if of.turns_with.is_some() => {

@@ -122,7 +122,9 @@ impl Seen {
         let stands = stands || (what == Fate::Moves && has_stood && for_an_instant);
         let trembles = || (stands && turning.is_none()).then_some(Going::Trembles);
         let going = going.or_else(trembles);
-        let is_here = matches!(what, Fate::Rests | Fate::Moves) && rests != Some(0.0) && self.stands_from == Some(0.0);
+        // What rests on its beam from the start may have moved with it.
+        let moved = rests != Some(0.0) || self.unmoved != Some(0.0);
+        let is_here = matches!(what, Fate::Rests | Fate::Moves) && moved && self.stands_from == Some(0.0);
         let beam = |when: bool| watched.carrier.beam().filter(|_| when).map(|beam| layout.beams[beam].name.clone());
         BodyVerdict {
             body: layout.blocks[number].name.clone(),
@@ -176,6 +178,7 @@ impl Seen {
                 .map(|(last, _)| last)
                 .filter(|_| going == Some(Going::Trembles) && has_stood && part.is_some_and(|part| part >= ROCKED)),
             tips,
+            unmoved_from: self.unmoved.filter(|since| rests.is_some() && state.t - since >= watched.still_time),
             stood_on: beam(is_here && self.never_moved(watched, least)),
             left_beam: beam(what == Fate::Left),
             fell_off: (what == Fate::Overturned)

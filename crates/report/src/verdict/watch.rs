@@ -191,15 +191,23 @@ impl Watched {
         Some(foot + if ahead { half } else { -half })
     }
 
-    /// How fast it moves, its spin as the speed of its farthest point, m/s: relative to what carries it or, if that is less, to what carries that. A
-    /// block may be still on a beam that bends slowly, and over one that rings under it by micrometres.
+    /// How fast it moves: relative to what carries it or, if that is less, to what carries that. A block may be still on a beam that bends, and over
+    /// one that rings under it by micrometres.
     pub(super) fn speed(&self, layout: &Layout, number: usize, state: &State) -> f64 {
+        self.total(self.velocity(layout, number, state)).min(self.speed_over_base(layout, number, state))
+    }
+
+    /// A velocity with a spin, which counts as the speed of its farthest point, m/s.
+    fn total(&self, [vx, vy, spin]: [f64; 3]) -> f64 {
+        vx.hypot(vy) + self.reach * spin.abs()
+    }
+
+    /// How fast it moves relative to the supports of the beam that carries it, or to what else does, m/s.
+    pub(super) fn speed_over_base(&self, layout: &Layout, number: usize, state: &State) -> f64 {
         let range = layout.blocks[number].range.clone();
         let (q, v) = (&state.q[range.clone()], &state.v[range]);
         let base = self.carrier.base_velocity([q[0], q[1]], layout, state);
-        let total = |[vx, vy, spin]: [f64; 3]| vx.hypot(vy) + self.reach * spin.abs();
-        let over_base = total([v[0] - base[0], v[1] - base[1], v[2] - base[2]]);
-        total(self.velocity(layout, number, state)).min(over_base)
+        self.total([v[0] - base[0], v[1] - base[1], v[2] - base[2]])
     }
 
     /// By how much it is turned from lying flat on what carries it, where the block is, rad; 0 of one that has no sides to lie on.
@@ -215,8 +223,9 @@ impl Watched {
     pub(super) fn velocity(&self, layout: &Layout, number: usize, state: &State) -> [f64; 3] {
         let range = layout.blocks[number].range.clone();
         let (q, v) = (&state.q[range.clone()], &state.v[range]);
-        // On another side than its base it doesn't stand on its feet.
-        let feet = self.feet_at(q).filter(|[left, right]| right - left > 0.5 * self.base());
+        // On another side than its base it doesn't stand on its feet, and on another block not on the beam.
+        let on_its_feet = |[left, right]: &[f64; 2]| self.carrier.beam().is_some() && right - left > 0.5 * self.base();
+        let feet = self.feet_at(q).filter(on_its_feet);
         let carrier = self.carrier.velocity([q[0], q[1]], feet, layout, state);
         [v[0] - carrier[0], v[1] - carrier[1], v[2] - carrier[2]]
     }
