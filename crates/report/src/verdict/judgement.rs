@@ -122,8 +122,8 @@ impl Seen {
         let stands = stands || (what == Fate::Moves && has_stood && for_an_instant);
         let trembles = || (stands && turning.is_none()).then_some(Going::Trembles);
         let going = going.or_else(trembles);
-        // What rests on its beam from the start may have moved with it.
-        let moved = rests != Some(0.0) || self.unmoved != Some(0.0);
+        // What rests on its beam from the start may have moved with it; where supports move it is told to stand on these.
+        let moved = rests != Some(0.0) || (self.unmoved != Some(0.0) && watched.driven_until == 0.0);
         let is_here = matches!(what, Fate::Rests | Fate::Moves) && moved && self.stands_from == Some(0.0);
         let beam = |when: bool| watched.carrier.beam().filter(|_| when).map(|beam| layout.beams[beam].name.clone());
         BodyVerdict {
