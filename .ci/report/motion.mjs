@@ -192,9 +192,8 @@ export async function unplotted(page, trajectory) {
       return [Number(document.getElementById("time-readout").dataset.t), [...document.querySelectorAll("#plots .panel")].map((panel) => ({
         title: panel.querySelector("h2, h3")?.textContent ?? "",
         unit: panel.dataset.unit ?? "",
-        // What is pale behind a mean is read from the plot's data.
-        values: [...panel.querySelectorAll(".key b")].map((value) => value.textContent).concat(panel.dataset.raw?.split(" ") ?? [])
-          .map((value) => Number(value.replace(/−/g, "-"))),
+        // Of what is pale behind a mean the value itself stands first.
+        values: [...panel.querySelectorAll(".key b")].map((value) => Number(value.textContent.split(" (")[0].replace(/−/g, "-"))),
       }))];
     }, [part, trajectory.map((row) => row.t.toPrecision(9))]);
     shown.push({ t, panels });
