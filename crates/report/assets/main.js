@@ -157,7 +157,7 @@
   addPanels(true);
   if (document.querySelector("#plots .key b")) {
     const note = htmlElement("p", "note", "Numbers beside names: values at the time of the picture, or under the pointer.");
-    if (document.querySelector("#plots path.raw")) note.append(" Where a curve is pale: its value, then in brackets that of the strong one.");
+    if (data.panels.some(({ series }) => series.some(({ raw }) => raw)) || forces.points.some(({ mean }) => mean)) note.append(" Where a curve is pale: its value, then in brackets that of the strong one.");
     note.id = "readouts";
     byId("plots").prepend(note);
   }

@@ -182,8 +182,8 @@ fn warnings(summary: &Summary) -> String {
     }
     let title = if summary.warnings.len() == 1 { "Warning" } else { "Warnings" };
     let mut html = format!(
-        "<section id=\"warnings\" aria-labelledby=\"warnings-title\">\n<details>\n<summary><h2 id=\"warnings-title\">{title}</h2>: \
-         {}</summary>\n<ul>\n",
+        "<section id=\"warnings\" aria-labelledby=\"warnings-title\">\n<h2 class=\"unseen\" id=\"warnings-title\">Warnings</h2>\n\
+         <details>\n<summary><b>{title}</b>: {}</summary>\n<ul>\n",
         escaped(&subjects.join("; "))
     );
     for warning in &summary.warnings {
