@@ -1,17 +1,22 @@
 //! The plots of the page as figures for a paper.
 
+mod cut_lines;
+mod noted;
+
 use super::accelerograms;
 use super::bands::BAND_COLUMNS;
 use super::content::largest;
 use super::crowd::CrowdCurve;
 use super::curves::{Does, ForceCurve};
 use super::drawings;
-use super::notes::{About, Note, joined};
+use super::notes::{About, Note};
 use super::opening::opening;
-use super::panels::{Cut, LEAST_FORCE, Panels, Place, Portrait, PortraitLine, TimePanel, prefix, time_unit};
+use super::panels::{LEAST_FORCE, Panels, Place, Portrait, PortraitLine, TimePanel, prefix, time_unit};
 use super::recorder::{MANY_IMPACTS, PageRecorder};
 use super::span;
 use crate::with_digits;
+use cut_lines::{cut_axis, cut_lines, range_of};
+use noted::{Noted, noted_once};
 use teeter_plot::{Axis, Band, Colour, Figure, Legend, Panel, Series};
 
 /// File names and SVG text of the figures that the scene has, of the width that it asks for. Over time: `x.svg`, `y.svg`, `phi.svg`
@@ -93,9 +98,6 @@ const BRIEFLY: Colour = Colour::Guide;
 
 /// Least range of angles (°) and angular velocities (rad/s).
 const STILL: f64 = 2e-3;
-
-/// A panel of a figure, and what is said of it.
-type Noted = (Panel, Vec<Note>);
 
 struct Plots<'a> {
     recorder: &'a PageRecorder,
@@ -468,162 +470,4 @@ fn stretches(borders: &[f64], forces: &ForceCurve) -> Vec<(f64, f64, Colour)> {
         }
     }
     stretches
-}
-
-/// The range of an axis that ends at a limit.
-fn range_of(cut: &Cut, lines: &[Series]) -> (f64, f64) {
-    let negative = values(lines).any(|y| y < -0.01 * cut.limit);
-    (if negative { -cut.limit } else { -0.06 * cut.limit }, cut.limit)
-}
-
-/// The lines of an axis that ends at a limit, without those that would be an even grey; whether any of them is pale; and what is said of what is cut.
-fn cut_lines(
-    lines: Vec<Series>,
-    cut: Option<Cut>,
-    range: Option<(f64, f64)>,
-    unit: &str,
-) -> (Vec<Series>, bool, Option<Note>) {
-    let was_pale = lines.iter().any(Series::is_faint);
-    let lines = without_filled(lines, range);
-    let is_pale = lines.iter().any(Series::is_faint);
-    // Of what rings the pale band is cut, not single peaks.
-    let told = cut.map(|cut| match (was_pale, is_pale) {
-        (true, true) => format!("pale curves cut, {}", cut.reach(unit)),
-        (true, false) => format!("vibrations left out, {}", cut.whole_reach(unit)),
-        (false, _) => format!("peaks cut, {}", cut.reach(unit)),
-    });
-    (lines, is_pale, told.map(Note::of_plot))
-}
-
-/// Of what rings so much that it would be an even grey, the strong curve tells all: lines without what is pale and cut, to both ends of the range, in most
-/// of the time in which it is anything.
-fn without_filled(mut lines: Vec<Series>, range: Option<(f64, f64)>) -> Vec<Series> {
-    let Some((low, high)) = range else { return lines };
-    // Where the axis ends for what is below 0: there, or just below 0, for what has one sign.
-    let bottom = if low > -high { low.max(0.0) } else { low };
-    let fills = |line: &Series| {
-        let (mut filled, mut all) = (0_usize, 0_usize);
-        let y: Vec<f64> = line.points().iter().map(|point| point.1).collect();
-        for part in y.chunks(STRETCH) {
-            let least = part.iter().copied().fold(f64::INFINITY, f64::min);
-            let most = part.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            all += usize::from(least.abs().max(most.abs()) > 0.01 * high);
-            filled += usize::from(most >= high && least <= bottom);
-        }
-        2 * filled > all && all > 0
-    };
-    lines.retain(|line| !(line.is_faint() && fills(line)));
-    lines
-}
-
-/// So many points of a curve are a vertical stroke of its figure.
-const STRETCH: usize = 16;
-
-/// What notes of panels say at length stands once below a figure, where more than one says such: of which panels, unless it is of most of them. A short
-/// one that all have, as the name of the only pair, stays at the first.
-fn noted_once(panels: Vec<Noted>) -> (Vec<Panel>, Option<String>) {
-    let is_long = |note: &&Note| note.text.chars().count() > SHORT;
-    let noted: Vec<usize> = (0..panels.len()).filter(|k| panels[*k].1.iter().any(|note| is_long(&note))).collect();
-    if noted.len() < 2 {
-        return (panels.into_iter().map(|(panel, notes)| panel.note(joined(&notes))).collect(), None);
-    }
-    // What is said, of which panels.
-    let mut said: Vec<(&Note, Vec<usize>)> = Vec::new();
-    for k in &noted {
-        for note in panels[*k].1.iter().filter(is_long) {
-            match said.iter_mut().find(|(known, _)| *known == note) {
-                Some((_, of)) => of.push(*k),
-                None => said.push((note, vec![*k])),
-            }
-        }
-    }
-    let mut sentences: Vec<(Vec<usize>, Vec<&Note>)> = Vec::new();
-    for (note, of) in said {
-        let of = if 2 * of.len() > noted.len() { Vec::new() } else { of };
-        match sentences.iter_mut().find(|(known, _)| *known == of) {
-            Some((_, notes)) => notes.push(note),
-            None => sentences.push((of, vec![note])),
-        }
-    }
-    // What holds of most comes first.
-    sentences.sort_by_key(|(of, _)| of.first().map_or(0, |first| first + 1));
-    let sentence = |(of, notes): (Vec<usize>, Vec<&Note>)| {
-        let text = joined(notes).unwrap_or_default();
-        let mut names: Vec<&str> = of.iter().map(|k| panels[*k].0.quantity()).collect();
-        names.dedup();
-        if names.is_empty() { capitalised(&text) } else { format!("{} – {text}", names.join(", ")) }
-    };
-    let note = sentences.into_iter().map(sentence).collect::<Vec<_>>().join(". ");
-    let plots = panels.iter().filter(|(panel, _)| !panel.quantity().is_empty()).count();
-    let of_all = |note: &Note| plots > 1 && panels.iter().filter(|(_, notes)| notes.contains(note)).count() == plots;
-    let short = panels
-        .iter()
-        .enumerate()
-        .map(|(k, (_, notes))| joined(notes.iter().filter(|note| !is_long(note) && (k == 0 || !of_all(note)))));
-    let short: Vec<Option<String>> = short.collect();
-    (panels.into_iter().zip(short).map(|((panel, _), note)| panel.note(note)).collect(), Some(note))
-}
-
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
-/// A part of a note of up to so many characters stays above its panel.
-const SHORT: usize = 46;
-
-/// The y axis of lines that may have been cut to a range.
-fn cut_axis(label: &str, range: Option<(f64, f64)>, lines: &[Series], least: f64) -> Axis {
-    match range {
-        Some((low, high)) => Axis::between(label, low, high),
-        None => Axis::around(label, values(lines), least),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_several_panels_say_at_length_stands_once_below_the_figure() {
-        let panel = |quantity: &str, notes: &[&str]| {
-            let panel = Panel::new(Axis::between(format!("{quantity} (N)"), 0.0, 1.0));
-            (panel, notes.iter().copied().map(Note::of_plot).collect::<Vec<_>>())
-        };
-        let of_most = "strong: without vibrations of periods below 20 ms, not across impacts";
-        let own = "strong: through the largest of every 20 ms, not across impacts";
-        let panels = vec![
-            panel("Moment", &["book on shelf", of_most]),
-            panel("Stress", &["book on shelf", own]),
-            panel("Reactions", &["book on shelf", of_most, "peaks cut, up to 3 N"]),
-        ];
-        let (panels, note) = noted_once(panels);
-        let notes: Vec<Option<&str>> = panels.iter().map(Panel::own_note).collect();
-        assert_eq!(notes, [Some("book on shelf"), None, Some("peaks cut, up to 3 N")]);
-        let capital = capitalised(of_most);
-        assert_eq!(note.unwrap(), format!("{capital}. Stress \u{2013} {own}"));
-        // A single panel keeps its own.
-        let alone = vec![panel("Moment", &[of_most]), panel("Stress", &[])];
-        let (panels, note) = noted_once(alone);
-        assert_eq!((panels[0].own_note(), note), (Some(of_most), None));
-    }
-
-    #[test]
-    fn what_would_be_an_even_grey_is_left_out() {
-        let of = |size: f64| {
-            let ringing = (0..400).map(|k| (f64::from(k), if k % 2 == 0 { size } else { -size }));
-            let strong = Series::line("mean", (0..400).map(|k| (f64::from(k), 1.0)));
-            vec![Series::line("", ringing).faint(), strong]
-        };
-        let told = |size: f64, range: Option<(f64, f64)>| {
-            let cut = Cut { limit: 1.5, low: -size, high: 2.0 * size };
-            let (lines, is_pale, told) = cut_lines(of(size), Some(cut), range, "N");
-            (lines.len(), is_pale, told.unwrap().text)
-        };
-        let range = Some((-1.5, 1.5));
-        assert_eq!(told(40.0, range), (1, false, "vibrations left out, from \u{2212}40 to 80 N".to_owned()));
-        // What stays within the range, or has no end that cuts it, is drawn.
-        assert_eq!(told(1.2, range), (2, true, "pale curves cut, up to 2.4 N".to_owned()));
-        assert!(told(40.0, None).1);
-    }
 }
