@@ -171,6 +171,9 @@ function valueAt(rows, name, t) {
   return a[name] + part * (b[name] - a[name]);
 }
 
+/** What a column such as `table.moment@0.09` is of, and where; a body's name has no dot. */
+const quantity = (name) => name.slice(name.indexOf(".") + 1).split("@");
+
 /** Where in the run values are compared. */
 const looks = [0.13, 0.4, 0.7, 1];
 
@@ -192,20 +195,22 @@ export async function unplotted(page, trajectory) {
       return [Number(document.getElementById("time-readout").dataset.t), [...document.querySelectorAll("#plots .panel")].map((panel) => ({
         title: panel.querySelector("h2, h3")?.textContent ?? "",
         unit: panel.dataset.unit ?? "",
-        // What is pale behind a mean is read from the plot's data.
-        values: [...panel.querySelectorAll(".key b")].map((value) => value.textContent).concat(panel.dataset.raw?.split(" ") ?? [])
-          .map((value) => Number(value.replace(/−/g, "-"))),
+        // Of a beam that nothing holds, which the table has as a whole.
+        fromLine: panel.querySelector(".note")?.textContent.includes("from the line through the ends") ?? false,
+        // Of what is pale behind a mean the value itself stands first.
+        values: [...panel.querySelectorAll(".key b")].map((value) => Number(value.textContent.split(" (")[0].replace(/−/g, "-"))),
       }))];
     }, [part, trajectory.map((row) => row.t.toPrecision(9))]);
     shown.push({ t, panels });
   }
   const missing = [];
   for (const name of Object.keys(trajectory[0])) {
-    const [what, place] = name.split(".").pop().split("@");
+    const [what, place] = quantity(name);
     if (!(what in titles) || place === undefined) continue;
+    if (what === "w" && shown[0].panels.some(({ fromLine }) => fromLine)) continue;
     const most = largest(trajectory, (row) => row[name]);
     // Rounding isn't drawn: also that of the largest of its kind, as of the moment at a free end.
-    const kind = Object.keys(trajectory[0]).filter((other) => other.split(".").pop().split("@")[0] === what);
+    const kind = Object.keys(trajectory[0]).filter((other) => quantity(other)[0] === what);
     const greatest = Math.max(...kind.map((other) => largest(trajectory, (row) => row[other])));
     if (!(most > Math.max(1e-9, 1e-8 * greatest))) continue;
     // One curve, the same at all times; how its points are thinned may move it by little.

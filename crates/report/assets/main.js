@@ -2,6 +2,7 @@
 
 (() => {
   const several = scenery.blocks.length > 1;
+  const sentence = (text) => `${text[0].toUpperCase()}${text.slice(1)}.`;
   if (crowd) addCrowd();
   addPanels(false);
 
@@ -14,7 +15,7 @@
         id: panel.id, contact: panel.contact, title: panel.title, unit: panel.unit, series, guides: panel.guides, least: panel.least,
         cut: panel.cut, height: late ? 160 : 170,
       });
-      if (panel.note) htmlElement("p", "note", `${panel.note[0].toUpperCase()}${panel.note.slice(1)}.`, byId(`panel-${panel.id}`));
+      if (panel.note) htmlElement("p", "note", sentence(panel.note), byId(`panel-${panel.id}`));
     }
   }
 
@@ -113,8 +114,8 @@
       });
       const over = `${forces.rigid}${strikes.length ? " without the impacts" : ""}`;
       const ofSprings = forces.compliant?.includes(k);
-      if (ofSprings && forces.springs) htmlElement("p", "note", `T${forces.springs.slice(1)}.`, byId(`panel-${key}-${k}`));
-      if (!ofSprings) htmlElement("p", "note", means.length ? `Pale: ${over}. Strong: without vibrations of periods below ${forces.period}.` : `${over[0].toUpperCase()}${over.slice(1)}.`, byId(`panel-${key}-${k}`));
+      if (ofSprings && forces.springs) htmlElement("p", "note", sentence(forces.springs), byId(`panel-${key}-${k}`));
+      if (!ofSprings) htmlElement("p", "note", means.length ? `Pale: ${over}. Strong: without vibrations of periods below ${forces.period}.` : sentence(over), byId(`panel-${key}-${k}`));
       if (sums) {
         htmlElement("p", "note", "The sum over the points: how those that stick share it, equilibrium leaves open. Their shares are in contacts.csv.", byId(`panel-${key}-${k}`));
       }
@@ -127,6 +128,7 @@
       plots.add({
         id: `impacts-${k}`, contact: k, title: `Normal impulse of impacts${suffix}`, unit: `${prefix}N s`, series: series("impacts", factor, strikes), floor: 0, least: 1e-300, height: 110,
       });
+      htmlElement("p", "note", sentence(forces.struck), byId(`panel-impacts-${k}`));
     }
     plots.add({
       id: `state-${k}`, contact: k, title: `Contact state${suffix}`, series: [],
@@ -155,6 +157,7 @@
   addPanels(true);
   if (document.querySelector("#plots .key b")) {
     const note = htmlElement("p", "note", "Numbers beside names: values at the time of the picture, or under the pointer.");
+    if (data.panels.some(({ series }) => series.some(({ raw }) => raw)) || forces.points.some(({ mean }) => mean)) note.append(" Where a curve is pale: its value, then in brackets that of the strong one.");
     note.id = "readouts";
     byId("plots").prepend(note);
   }
@@ -173,7 +176,7 @@
       id, title, xName, xUnit, unit, guides, least: least[1], leastX: least[0], portrait: true, height: 300,
       series,
     });
-    if (note) htmlElement("p", "note", `${note[0].toUpperCase()}${note.slice(1)}.`, byId(`panel-${id}`));
+    if (note) htmlElement("p", "note", sentence(note), byId(`panel-${id}`));
   }
 
   const [slider, play, speed] = ["time-slider", "play", "speed"].map(byId);
@@ -486,7 +489,7 @@
   let printed = null;
   window.addEventListener("beforeprint", () => {
     // Long tables stay folded unless they were unfolded before: they are sheets of numbers that the files hold.
-    document.querySelectorAll("details.again, #model").forEach((one) => one.setAttribute("open", ""));
+    document.querySelectorAll("details.again, #model, #warnings details").forEach((one) => one.setAttribute("open", ""));
     if (printed) return;
     setPlaying(false);
     printed = { frame, pictures: htmlElement("div", "printed", undefined, byId("stage")) };

@@ -66,11 +66,9 @@ const plots = (() => {
     if (panel.cut) {
       const toggle = htmlElement("button", "link", "", row);
       toggle.type = "button";
-      // Of what rings the pale band is cut, to both sides, not single peaks.
-      const pale = panel.series.filter(({ raw }) => raw);
-      const what = pale.length ? "pale curves" : "peaks";
-      const below = pale.some(({ y }) => y.some((x) => x < -0.01 * panel.cut.limit));
-      const cut = `${what} cut, up to ${below ? "±" : ""}${number(panel.cut.largest, 3)} ${panel.unit}`;
+      // Of what rings the pale band is cut, not single peaks.
+      const what = panel.series.some(({ raw }) => raw) ? "pale curves" : "peaks";
+      const cut = `${what} cut, ${panel.cut.reach}`;
       // Paper has no buttons, but the same axis.
       const printed = htmlElement("span", "on-paper", "", row);
       const say = () => {
@@ -398,12 +396,12 @@ const plots = (() => {
 
   function readOut(t) {
     for (const panel of panels.filter((one) => !one.portrait)) {
-      // What stays behind a mean has no place in the legend, but for scripts.
-      const pale = panel.series.filter(({ raw }) => raw).map((series) => readout(read(series, t), panel.most, 4));
-      if (pale.length) panel.element.dataset.raw = pale.join(" ");
       for (const series of panel.series.filter(({ raw }) => !raw)) {
         const shown = (value) => readout(value !== null && Math.abs(value) < 1e-2 * panel.least ? 0 : value, panel.most, series.upper ? 3 : 4);
-        const value = shown(read(series, t));
+        // The value itself is that of the pale curve: a mean at the start is not what the run starts with.
+        const pale = panel.series.find(({ raw, index }) => raw && index === series.index);
+        const own = shown(read(series, t));
+        const value = pale ? `${shown(read(pale, t))} (${own})` : own;
         series.readout.textContent = series.upper ? `${value} … ${shown(valueAt({ t: series.t, y: series.upper }, t))}` : value;
       }
     }

@@ -4,13 +4,13 @@ const spoken = (() => {
   const round = (x) => number(x, 3);
   const atTime = (t) => `${Number(t.toPrecision(6))} s`;
 
-  /** The numbers of least and largest value; `null` of a series without any. */
+  /** The numbers of least and largest value, of several that differ by rounding the first; `null` of a series without any. */
   function ends(values) {
     let [low, high] = [null, null];
     values.forEach((x, i) => {
       if (x === null || !Number.isFinite(x)) return;
-      if (low === null || x < values[low]) low = i;
-      if (high === null || x > values[high]) high = i;
+      if (low === null || x < values[low] - 1e-9 * Math.abs(values[low])) low = i;
+      if (high === null || x > values[high] + 1e-9 * Math.abs(values[high])) high = i;
     });
     return low === null ? null : [low, high];
   }

@@ -1,5 +1,6 @@
 //! The largest deflection of each beam of a scene without blocks: what became of it, as no block says anything.
 
+use crate::first::exceeds;
 use serde::{Deserialize, Serialize};
 use teeter_beam::ShapeAt;
 use teeter_integrator::State;
@@ -15,7 +16,7 @@ pub struct LargestDeflection {
     pub w: f64,
     /// Where, m from the left end.
     pub x: f64,
-    /// When, s: the start of the run or the end of a step.
+    /// When first, s: the start of the run or the end of a step.
     pub t: f64,
 }
 
@@ -44,7 +45,7 @@ impl Places {
             }
             for (x, shape) in places {
                 let w = beam.deflection(shape, &state.q).w;
-                if w.abs() > largest[number].w.abs() {
+                if exceeds(w.abs(), largest[number].w.abs()) {
                     (largest[number].w, largest[number].x, largest[number].t) = (w, *x, state.t);
                 }
             }

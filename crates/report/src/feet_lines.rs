@@ -2,7 +2,7 @@
 //! summary's peaks and crossings count.
 
 use serde::{Deserialize, Serialize};
-use teeter_integrator::RockingMonitor;
+use teeter_integrator::{Peak, RockingMonitor};
 
 /// The rocking of a block about the line between its feet on its beam; about what carries it where that is no beam.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,6 +39,21 @@ impl FeetLine {
     #[must_use]
     pub fn monitor(&self) -> &RockingMonitor {
         &self.monitor
+    }
+
+    /// The peak that no crossing has followed yet. A beam that vibrates turns the line to and fro: the block has turned where it has against what carries
+    /// it (`about`), too.
+    pub(crate) fn turned(&self, about: &RockingMonitor) -> Option<Peak> {
+        let with = |turned: &Peak| about.turned().is_some_and(|of| of.phi * turned.phi > 0.0);
+        self.monitor.turned().filter(|turned| self.now.is_none() || with(turned))
+    }
+
+    /// The last peak, if it counts from a line on a beam.
+    pub(crate) fn last_peak(&self, about: &RockingMonitor) -> Option<Peak> {
+        match self.turned(about) {
+            Some(turned) => self.now.map(|_| turned),
+            None => self.monitor.peaks().last().copied().zip(*self.peaks.last()?).map(|(peak, _)| peak),
+        }
     }
 
     /// The line's slopes at the peaks of the monitor, then at the largest angle since, rad.

@@ -14,6 +14,7 @@ mod deflections;
 mod driven;
 mod export;
 mod feet_lines;
+mod first;
 mod lock;
 mod made_energy;
 mod meetings;

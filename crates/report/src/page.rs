@@ -19,6 +19,7 @@ mod html;
 mod jolts;
 mod means;
 mod network;
+mod notes;
 mod opening;
 mod orbit;
 mod outline;

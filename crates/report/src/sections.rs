@@ -2,6 +2,7 @@
 //! that a beam yields.
 
 use crate::WarningLog;
+use crate::first::exceeds;
 use crate::number::{push, push_next};
 use crate::{with_digits, with_unit};
 use serde::{Deserialize, Serialize};
@@ -97,7 +98,7 @@ pub struct LargestStress {
     pub stress: f64,
     /// Where, m from the left end.
     pub x: f64,
-    /// End of the step, s.
+    /// End of the step in which it was reached first, s.
     pub t: f64,
 }
 
@@ -381,7 +382,7 @@ impl BeamRecord {
         }
         let peak = forces.largest_stress(beam)?;
         let found = LargestStress { stress: peak.stress, x: peak.x, t };
-        if self.largest.is_none_or(|largest| found.stress > largest.stress) {
+        if self.largest.is_none_or(|largest| exceeds(found.stress, largest.stress)) {
             self.largest = Some(found);
         }
         Some(found)

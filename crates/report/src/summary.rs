@@ -224,14 +224,18 @@ pub(crate) struct Passages {
 }
 
 impl Passages {
-    /// Those that the monitors of the blocks have found; with each comes the slopes of the line from which its peaks count.
-    fn of<'a>(layout: &Layout, monitors: impl Iterator<Item = (&'a RockingMonitor, Vec<Option<f64>>)>) -> Self {
+    /// Those that the monitors of the blocks have found; with each come the peak that no crossing has followed yet and the slopes of the line from which
+    /// its peaks count.
+    fn of<'a>(
+        layout: &Layout,
+        monitors: impl Iterator<Item = (&'a RockingMonitor, Option<Peak>, Vec<Option<f64>>)>,
+    ) -> Self {
         let mut all = Self::default();
-        for (block, (monitor, lines)) in layout.blocks.iter().zip(monitors) {
+        for (block, (monitor, turned, lines)) in layout.blocks.iter().zip(monitors) {
             let body = || block.name.clone();
             all.crossings.extend(monitor.crossings().iter().map(|of| CrossingRow { t: of.t, body: body() }));
             // With the one that the headline has, which no crossing has followed yet; not behind a list that is full.
-            let turned = monitor.turned().filter(|_| monitor.crossings().len() as u64 == monitor.count());
+            let turned = turned.filter(|_| monitor.crossings().len() as u64 == monitor.count());
             let row = |(k, of): (usize, &Peak)| PeakRow {
                 t: of.t,
                 body: body(),
@@ -244,6 +248,23 @@ impl Passages {
         all.peaks.sort_by(|a, b| a.t.total_cmp(&b.t));
         all
     }
+}
+
+/// Verdicts as the headline tells them: the last peak of what rocks on a beam counts from the line between its feet there, as φ/α and the table of half
+/// cycles of the page, not from the beam's undeformed axis.
+fn as_told(verdict: &[BodyVerdict], record: &Record) -> Vec<BodyVerdict> {
+    let mut told = verdict.to_vec();
+    for (of, (line, about)) in told.iter_mut().zip(record.feet_lines.iter().zip(&record.rocking)) {
+        let since = of.stands_from.unwrap_or(0.0);
+        if of.last_peak.is_some()
+            && of.on_its_way.is_none()
+            && let Some(peak) = line.last_peak(about).filter(|peak| peak.t >= since)
+        {
+            (of.last_peak, of.t) = (Some(peak.phi), Some(peak.t));
+            of.against = Some("the line between its feet".to_owned());
+        }
+    }
+    told
 }
 
 /// What a beam bore, over all steps.
@@ -434,8 +455,9 @@ impl Summary {
         let (ledger, tally) = (&state.ledger, &state.tally);
         let counted = record.rocking.iter().map(RockingMonitor::count).sum::<u64>();
         let Passages { crossings, peaks } =
-            Passages::of(layout, record.rocking.iter().map(|monitor| (monitor, Vec::new())));
-        let lines = record.feet_lines.iter().map(|line| (line.monitor(), line.slopes().collect()));
+            Passages::of(layout, record.rocking.iter().map(|monitor| (monitor, monitor.turned(), Vec::new())));
+        let lines = record.feet_lines.iter().zip(&record.rocking);
+        let lines = lines.map(|(line, about)| (line.monitor(), line.turned(about), line.slopes().collect()));
         // What has no headline has no page.
         let passages = if wanted("headline") { Passages::of(layout, lines) } else { Passages::default() };
         let gains = &ledger.positive_contact_work;
@@ -451,7 +473,7 @@ impl Summary {
             |of: fn(&BodyVerdict) -> Option<f64>, pick: fn(f64, f64) -> f64| verdict.iter().filter_map(of).reduce(pick);
         Self {
             headline: match wanted("headline") {
-                true => headline(scene, state, &verdict, (&beams, &deflections)),
+                true => headline(scene, state, &as_told(&verdict, record), (&beams, &deflections)),
                 false => String::new(),
             },
             max_phi_over_alpha: first(|of| of.max_phi_over_alpha, f64::max),

@@ -16,6 +16,36 @@ pub struct Warning {
     pub text: String,
 }
 
+impl Warning {
+    /// What it is about, in a few words for a list of several; its text says the rest.
+    #[must_use]
+    pub fn subject(&self) -> &str {
+        match self.code.as_ref() {
+            "under-resolved" => "steps too long for impacts",
+            "under-resolved-flight" => "theta too far from 0.5 for a flight",
+            "under-resolved-swings" => "steps too long for the swings of a beam",
+            crate::UNLOCATED => "impacts or ends of slides that were not located",
+            crate::bounces::CONTESTED => "a landing that hangs on the step",
+            "crest-impact" => "a base struck by a hump of a beam",
+            "unconverged" => "steps whose contacts were not solved",
+            "far-turn" => "a turn too far for a step",
+            "fast-pass" => "a motion too far for a step",
+            "model-limits" => "contacts that the model left out",
+            "large-deflection" => "a large deflection",
+            "deep-penetration" => "a corner deep in a surface",
+            "between-corners" | "past-the-end" | "passes-through" => "bodies inside each other",
+            "energy-account" => "energy that does not add up",
+            crate::made_energy::ENERGY_MADE => "energy made at contacts",
+            crate::taken_energy::ENERGY_TAKEN => "energy taken by the scheme",
+            "yield" => "stress beyond the yield strength",
+            HORIZON => "no prediction up to the end",
+            "ended" => "an early end",
+            "scene" => "the scene",
+            other => other,
+        }
+    }
+}
+
 /// The kind of the warning that a motion can be told up to a time before its end only.
 pub const HORIZON: &str = "horizon";
 

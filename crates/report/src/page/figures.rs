@@ -1,16 +1,22 @@
 //! The plots of the page as figures for a paper.
 
+mod cut_lines;
+mod noted;
+
 use super::accelerograms;
 use super::bands::BAND_COLUMNS;
 use super::content::largest;
 use super::crowd::CrowdCurve;
 use super::curves::{Does, ForceCurve};
 use super::drawings;
+use super::notes::{About, Note};
 use super::opening::opening;
 use super::panels::{LEAST_FORCE, Panels, Place, Portrait, PortraitLine, TimePanel, prefix, time_unit};
 use super::recorder::{MANY_IMPACTS, PageRecorder};
 use super::span;
-use crate::{shortest, with_digits};
+use crate::with_digits;
+use cut_lines::{cut_axis, cut_lines, range_of};
+use noted::{Noted, noted_once};
 use teeter_plot::{Axis, Band, Colour, Figure, Legend, Panel, Series};
 
 /// File names and SVG text of the figures that the scene has, of the width that it asks for. Over time: `x.svg`, `y.svg`, `phi.svg`
@@ -61,7 +67,7 @@ pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
     ] {
         let of_file = panels.panels.iter().filter(|panel| panel.place == Place::Forces);
         let own = of_file.filter(|panel| ids.iter().any(|id| panel.id.starts_with(id)));
-        let own: Vec<Panel> = own.map(|panel| plots.time_panel(panel)).collect();
+        let own: Vec<Noted> = own.map(|panel| plots.time_panel(panel)).collect();
         if !own.is_empty() {
             add(file, plots.over_time(file, title, own));
         }
@@ -103,16 +109,16 @@ struct Plots<'a> {
 
 impl Plots<'_> {
     /// Of forces and energies, which may go on, or change, where nothing moves: the whole run.
-    fn over_time(&self, id: &str, title: &str, panels: Vec<Panel>) -> Figure {
+    fn over_time(&self, id: &str, title: &str, panels: Vec<Noted>) -> Figure {
         self.figure(id, title, panels, None)
     }
 
     /// Of motions: the part of the run in which anything moves.
-    fn while_moving(&self, id: &str, title: &str, panels: Vec<Panel>) -> Figure {
+    fn while_moving(&self, id: &str, title: &str, panels: Vec<Noted>) -> Figure {
         self.figure(id, title, panels, self.moving)
     }
 
-    fn figure(&self, id: &str, title: &str, panels: Vec<Panel>, part: Option<[f64; 2]>) -> Figure {
+    fn figure(&self, id: &str, title: &str, panels: Vec<Noted>, part: Option<[f64; 2]>) -> Figure {
         let (start, end) = (self.t[0], self.t[self.t.len() - 1]);
         let end = if end > start { end } else { start + 1.0 };
         let [from, to] = part.unwrap_or([start, end]);
@@ -120,7 +126,7 @@ impl Plots<'_> {
             if to - from < end - start { format!(", of a run to {}", with_digits(end, "s", 6)) } else { String::new() };
         let (unit, factor) = time_unit(to - from);
         let x = Axis::between(format!("Time t ({unit}){part}"), from, to).shown_in(factor);
-        let first = panels.iter().position(Panel::has_ticks);
+        let first = panels.iter().position(|(panel, _)| panel.has_ticks());
         let (panels, note) = noted_once(panels);
         let panels = panels.into_iter().enumerate();
         // Said once in a figure.
@@ -141,7 +147,7 @@ impl Plots<'_> {
     }
 
     /// A panel that the page has, too, with the impacts marked.
-    fn time_panel(&self, panel: &TimePanel) -> Panel {
+    fn time_panel(&self, panel: &TimePanel) -> Noted {
         let borders = self.panels.curves.borders();
         let lines = panel.lines.iter().map(|line| {
             let t = if line.of.is_none() { &borders } else { &self.t };
@@ -151,15 +157,17 @@ impl Plots<'_> {
         });
         let lines: Vec<Series> = lines.collect();
         let label = format!("{} ({})", panel.title, panel.unit);
-        let (range, note) = cut_to(panel.cut_at(), &lines, &panel.unit);
+        let cut = panel.cut_at();
+        let range = cut.map(|cut| range_of(&cut, &lines));
         let y = cut_axis(&label, range, &lines, panel.least);
+        let (lines, about_pale, told) = cut_lines(lines, cut, range, &panel.unit);
         let contact = panel.of_contact.as_ref();
-        let name = contact.map(|(_, name)| name.clone()).filter(|name| !name.is_empty());
-        let notes: Vec<String> = [panel.note.clone(), note.or(name)].into_iter().flatten().collect();
-        let note = (!notes.is_empty()).then(|| notes.join("; "));
-        let (lines, note) = strong_alone(lines, range, note);
-        let drawn = Panel::new(y.clone()).with(lines).telling_apart().note(note);
-        self.marked(guided(drawn.levels(panel.guides.clone()), &panel.guides, &y), contact.map(|(pair, _)| *pair))
+        let name = contact.map(|(_, name)| name).filter(|name| !name.is_empty()).map(Note::of_plot);
+        let own = panel.notes.iter().filter(|note| about_pale || note.about != About::Pale).cloned();
+        let notes = own.chain(told.or(name)).collect();
+        let drawn = Panel::new(y.clone()).with(lines).telling_apart();
+        let drawn = guided(drawn.levels(panel.guides.clone()), &panel.guides, &y);
+        (self.marked(drawn, contact.map(|(pair, _)| *pair)), notes)
     }
 
     fn portrait(&self, portrait: &Portrait) -> Figure {
@@ -194,7 +202,7 @@ impl Plots<'_> {
 
     fn crowd_figure(&self, id: &str, title: &str, y_label: &str, lines: Vec<Series>) -> Figure {
         let y = Axis::around(y_label, values(&lines), STILL);
-        self.over_time(id, title, vec![Panel::new(y).with(lines)])
+        self.over_time(id, title, vec![(Panel::new(y).with(lines), Vec::new())])
     }
 
     /// Bands at the times of the pictures, and the bodies in which the quantity becomes largest.
@@ -221,7 +229,7 @@ impl Plots<'_> {
         let lines = self.crowd_chosen(curve, factor);
         let y = Axis::around(format!("Distance from the start ({prefix}m)"), values(&lines), 1e-6 * factor);
         let title = "Distance of the bodies from their start over time, with those that go furthest";
-        self.over_time("displacement", title, vec![Panel::new(y).with(lines)])
+        self.over_time("displacement", title, vec![(Panel::new(y).with(lines), Vec::new())])
     }
 
     fn crowd_omega(&self) -> Figure {
@@ -231,7 +239,7 @@ impl Plots<'_> {
     }
 
     /// Of one pair or two a figure of all, if it fits a page; else one of each: of [`MOST_PAIRS`] at most, those with the largest values.
-    fn by_pairs(&self, file: &str, title: &str, pairs: Vec<(usize, f64, Vec<Panel>)>) -> Vec<(String, Figure)> {
+    fn by_pairs(&self, file: &str, title: &str, pairs: Vec<(usize, f64, Vec<Noted>)>) -> Vec<(String, Figure)> {
         if pairs.is_empty() {
             return Vec::new();
         }
@@ -247,7 +255,7 @@ impl Plots<'_> {
         sizes.sort_by(|a, b| b.total_cmp(a));
         let least = sizes[MOST_PAIRS.min(sizes.len()) - 1];
         let strongest = pairs.into_iter().filter(|(_, size, _)| *size >= least).take(MOST_PAIRS);
-        let figure = |(pair, _, panels): (usize, f64, Vec<Panel>)| {
+        let figure = |(pair, _, panels): (usize, f64, Vec<Noted>)| {
             let contact = &self.recorder.scenery.contacts[pair];
             let [upper, lower] = self.recorder.upper_and_lower(contact);
             let name = pair_file(file, upper, lower);
@@ -324,8 +332,8 @@ impl Plots<'_> {
             if normal.is_empty() {
                 continue;
             }
-            let mut panels = Vec::new();
-            let name = (scenery.contacts.len() > 1).then(|| self.recorder.pair_name(contact));
+            let mut panels: Vec<Noted> = Vec::new();
+            let name = (scenery.contacts.len() > 1).then(|| Note::of_plot(self.recorder.pair_name(contact)));
             let weight = values(&normal).fold(0.0, f64::max) / self.panels.force_units[pair][0].1;
             let units = self.panels.force_units[pair];
             let cuts = self.panels.cuts_of_contact(self.recorder, pair, &means_of_points);
@@ -337,39 +345,44 @@ impl Plots<'_> {
                 if !drawn[pair] {
                     continue;
                 }
-                let (range, cut) = cut_to(cut.map(|(limit, most)| (factor * limit, factor * most)), &lines, &unit);
-                let without = if impacts.is_empty() { "" } else { " without impacts" };
-                let meant = if contact.has_duration {
-                    self.panels.told_of_springs()
-                } else if what == "Normal" && means.iter().any(Option::is_some) {
-                    let raw = self.panels.told_of_rigid("");
-                    Some(format!("pale: {raw}; strong: without vibrations of periods below {period}"))
-                } else {
-                    Some(self.panels.told_of_rigid(without))
-                };
-                let many = self.panels.redundant[pair].note(what == "Tangential").map(str::to_owned);
-                let turns = (alternates && what == "Tangential").then(|| "sticks and slips by turns".to_owned());
-                let note = [name.clone(), meant, turns, cut, many].into_iter().flatten().collect::<Vec<_>>().join("; ");
-                let note = (!note.is_empty()).then_some(note);
+                if what == "Normal" {
+                    lines = over_the_raw(lines, std::mem::take(&mut means));
+                }
+                let cut = cut.map(|cut| cut.scaled(factor));
+                let range = cut.map(|cut| range_of(&cut, &lines));
                 let label = format!("{what} force ({unit})");
                 // From 0, as on the page: what varies by rounding only is then seen as constant.
                 let y = match range {
                     Some((low, high)) => Axis::between(label, low, high),
                     None => Axis::around(label, values(&lines).chain([0.0]), least),
                 };
-                let mut note = note;
-                if what == "Normal" {
-                    (lines, note) = strong_alone(over_the_raw(lines, std::mem::take(&mut means)), range, note);
-                }
-                panels.push(self.marked(Panel::new(y).with(lines).telling_apart(), Some(pair)).note(note));
+                let has_means = lines.iter().any(Series::is_faint);
+                let (lines, about_pale, told) = cut_lines(lines, cut, range, &unit);
+                let without = if impacts.is_empty() { "" } else { " without impacts" };
+                let meant = match () {
+                    () if contact.has_duration => self.panels.told_of_springs().map(Note::of_plot),
+                    () if has_means => Some(Note::of_pale(format!("pale: {}", self.panels.told_of_rigid("")))),
+                    () => Some(Note::of_plot(self.panels.told_of_rigid(without))),
+                };
+                let meant = meant.filter(|note| about_pale || note.about != About::Pale);
+                let strong = (has_means && !contact.has_duration)
+                    .then(|| Note::of_plot(format!("strong: without vibrations of periods below {period}")));
+                let many = self.panels.redundant[pair].note(what == "Tangential").map(Note::of_plot);
+                let turns = (alternates && what == "Tangential").then(|| Note::of_plot("sticks and slips by turns"));
+                let notes = [name.clone(), meant, strong, turns, told, many].into_iter().flatten().collect();
+                panels.push((self.marked(Panel::new(y).with(lines).telling_apart(), Some(pair)), notes));
             }
             if !impacts.is_empty() {
                 let label = format!("Impulse of impacts ({}N s)", self.panels.impulse_unit.0);
                 let y = Axis::around(label, values(&impacts).chain([0.0]), 1e-300);
-                panels.push(Panel::new(y).with(impacts).telling_apart().note(name));
+                panels.push((
+                    Panel::new(y).with(impacts).telling_apart(),
+                    [name, Some(Note::of_plot(self.panels.told_of_impacts()))].into_iter().flatten().collect(),
+                ));
             }
             let key = [(STICK, "stick"), (SLIP, "slip"), (BRIEFLY, "presses briefly"), (Colour::Paper, "open")];
-            panels.push(Panel::bands(bands, key.into_iter().filter(|(colour, _)| briefly || *colour != BRIEFLY)));
+            let key = key.into_iter().filter(|(colour, _)| briefly || *colour != BRIEFLY);
+            panels.push((Panel::bands(bands, key), Vec::new()));
             pairs.push((pair, weight, panels));
         }
         self.by_pairs("contact_forces", "Contact forces on the blocks over time", pairs)
@@ -457,167 +470,4 @@ fn stretches(borders: &[f64], forces: &ForceCurve) -> Vec<(f64, f64, Colour)> {
         }
     }
     stretches
-}
-
-/// The range of an axis that ends at a limit, with the largest of what it cuts, and a note on that.
-fn cut_to(at: Option<(f64, f64)>, lines: &[Series], unit: &str) -> (Option<(f64, f64)>, Option<String>) {
-    let Some((limit, largest)) = at else { return (None, None) };
-    let negative = values(lines).any(|y| y < -0.01 * limit);
-    let low = if negative { -limit } else { -0.06 * limit };
-    // Of what rings the pale band is cut, to both sides, not single peaks.
-    let what = match (lines.iter().any(Series::is_faint), negative) {
-        (true, true) => "pale curves cut, up to ±",
-        (true, false) => "pale curves cut, up to ",
-        (false, _) => "peaks cut, up to ",
-    };
-    (Some((low, limit)), Some(format!("{what}{} {unit}", shortest(largest, 3))))
-}
-
-/// Of what rings so much that it would be an even grey, the strong curve tells all: lines without what is pale and cut, to both ends of the range, in most
-/// of the time in which it is anything. And whether nothing pale is left.
-fn without_filled(mut lines: Vec<Series>, range: Option<(f64, f64)>) -> (Vec<Series>, bool) {
-    let Some((low, high)) = range.filter(|_| lines.iter().any(Series::is_faint)) else { return (lines, false) };
-    // Where the axis ends for what is below 0: there, or just below 0, for what has one sign.
-    let bottom = if low > -high { low.max(0.0) } else { low };
-    let fills = |line: &Series| {
-        let (mut filled, mut all) = (0_usize, 0_usize);
-        let y: Vec<f64> = line.points().iter().map(|point| point.1).collect();
-        for part in y.chunks(STRETCH) {
-            let least = part.iter().copied().fold(f64::INFINITY, f64::min);
-            let most = part.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            all += usize::from(least.abs().max(most.abs()) > 0.01 * high);
-            filled += usize::from(most >= high && least <= bottom);
-        }
-        2 * filled > all && all > 0
-    };
-    lines.retain(|line| !(line.is_faint() && fills(line)));
-    let is_left_out = !lines.iter().any(Series::is_faint);
-    (lines, is_left_out)
-}
-
-/// Lines without what would be an even grey, with their note.
-fn strong_alone(lines: Vec<Series>, range: Option<(f64, f64)>, note: Option<String>) -> (Vec<Series>, Option<String>) {
-    let (lines, is_left_out) = without_filled(lines, range);
-    (lines, if is_left_out { note.map(|note| of_strong(&note)) } else { note })
-}
-
-/// So many points of a curve are a vertical stroke of its figure.
-const STRETCH: usize = 16;
-
-/// A note without what it says of pale curves, which are left out.
-fn of_strong(note: &str) -> String {
-    let parts = note.split("; ").filter(|part| !part.starts_with("pale: "));
-    parts
-        .map(|part| part.replace("pale curves cut, up to", "vibrations left out, up to"))
-        .collect::<Vec<_>>()
-        .join("; ")
-}
-
-/// What notes of panels say at length stands once below a figure, where more than one says such: of which panels, unless it is of most of them. A short
-/// one that all have, as the name of the only pair, stays at the first.
-fn noted_once(panels: Vec<Panel>) -> (Vec<Panel>, Option<String>) {
-    let parts_of = |panel: &Panel| -> Vec<String> {
-        panel.own_note().into_iter().flat_map(|note| note.split("; ")).map(str::to_owned).collect()
-    };
-    let is_long = |part: &String| part.chars().count() > SHORT;
-    let noted: Vec<usize> = (0..panels.len()).filter(|k| parts_of(&panels[*k]).iter().any(is_long)).collect();
-    if noted.len() < 2 {
-        return (panels, None);
-    }
-    // What is said, of which panels.
-    let mut said: Vec<(String, Vec<usize>)> = Vec::new();
-    for k in &noted {
-        for part in parts_of(&panels[*k]).into_iter().filter(is_long) {
-            match said.iter_mut().find(|(known, _)| *known == part) {
-                Some((_, of)) => of.push(*k),
-                None => said.push((part, vec![*k])),
-            }
-        }
-    }
-    let mut sentences: Vec<(Vec<usize>, String)> = Vec::new();
-    for (part, of) in said {
-        let of = if 2 * of.len() > noted.len() { Vec::new() } else { of };
-        match sentences.iter_mut().find(|(known, _)| *known == of) {
-            Some((_, text)) => *text = format!("{text}; {part}"),
-            None => sentences.push((of, part)),
-        }
-    }
-    // What holds of most comes first.
-    sentences.sort_by_key(|(of, _)| of.first().map_or(0, |first| first + 1));
-    let sentence = |(of, text): (Vec<usize>, String)| {
-        let mut names: Vec<&str> = of.iter().map(|k| panels[*k].quantity()).collect();
-        names.dedup();
-        if names.is_empty() { capitalised(&text) } else { format!("{} – {text}", names.join(", ")) }
-    };
-    let note = sentences.into_iter().map(sentence).collect::<Vec<_>>().join(". ");
-    let plots = panels.iter().filter(|panel| !panel.quantity().is_empty()).count();
-    let of_all =
-        |part: &String| plots > 1 && panels.iter().filter(|panel| parts_of(panel).contains(part)).count() == plots;
-    let short: Vec<Option<String>> = (0..panels.len())
-        .map(|k| {
-            let parts = parts_of(&panels[k]).into_iter().filter(|part| !is_long(part) && (k == 0 || !of_all(part)));
-            Some(parts.collect::<Vec<_>>().join("; ")).filter(|note| !note.is_empty())
-        })
-        .collect();
-    (panels.into_iter().zip(short).map(|(panel, note)| panel.note(note)).collect(), Some(note))
-}
-
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
-/// A part of a note of up to so many characters stays above its panel.
-const SHORT: usize = 46;
-
-/// The y axis of lines that may have been cut to a range.
-fn cut_axis(label: &str, range: Option<(f64, f64)>, lines: &[Series], least: f64) -> Axis {
-    match range {
-        Some((low, high)) => Axis::between(label, low, high),
-        None => Axis::around(label, values(lines), least),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_several_panels_say_at_length_stands_once_below_the_figure() {
-        let panel = |quantity: &str, note: &str| {
-            Panel::new(Axis::between(format!("{quantity} (N)"), 0.0, 1.0))
-                .note((!note.is_empty()).then(|| note.to_owned()))
-        };
-        let of_most = "strong: without vibrations of periods below 20 ms, not across impacts";
-        let own = "strong: through the largest of every 20 ms, not across impacts";
-        let panels = vec![
-            panel("Moment", &format!("book on shelf; {of_most}")),
-            panel("Stress", &format!("book on shelf; {own}")),
-            panel("Reactions", &format!("book on shelf; {of_most}; peaks cut, up to 3 N")),
-        ];
-        let (panels, note) = noted_once(panels);
-        let notes: Vec<Option<&str>> = panels.iter().map(Panel::own_note).collect();
-        assert_eq!(notes, [Some("book on shelf"), None, Some("peaks cut, up to 3 N")]);
-        let capital = capitalised(of_most);
-        assert_eq!(note.unwrap(), format!("{capital}. Stress \u{2013} {own}"));
-        // A single panel keeps its own.
-        let alone = vec![panel("Moment", of_most), panel("Stress", "")];
-        let (panels, note) = noted_once(alone);
-        assert_eq!((panels[0].own_note(), note), (Some(of_most), None));
-    }
-
-    #[test]
-    fn what_would_be_an_even_grey_is_left_out() {
-        let of = |size: f64| {
-            let ringing = (0..400).map(|k| (f64::from(k), if k % 2 == 0 { size } else { -size }));
-            let strong = Series::line("mean", (0..400).map(|k| (f64::from(k), 1.0)));
-            vec![Series::line("", ringing).faint(), strong]
-        };
-        let (lines, is_left_out) = without_filled(of(40.0), Some((-1.5, 1.5)));
-        assert!(is_left_out && lines.len() == 1 && !lines[0].is_faint());
-        // What stays within the range, or has no end that cuts it, is drawn.
-        assert!(!without_filled(of(1.2), Some((-1.5, 1.5))).1 && !without_filled(of(40.0), None).1);
-        let note = of_strong("pale: all steps; strong: means; pale curves cut, up to ±40 N");
-        assert_eq!(note, "strong: means; vibrations left out, up to ±40 N");
-    }
 }

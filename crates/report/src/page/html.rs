@@ -173,9 +173,19 @@ fn warnings(summary: &Summary) -> String {
     if summary.warnings.is_empty() {
         return String::new();
     }
-    let mut html = "<section id=\"warnings\" aria-labelledby=\"warnings-title\">\n\
-                    <h2 id=\"warnings-title\">Warnings</h2>\n<ul>\n"
-        .to_owned();
+    // What they say at length is folded: it would stand between the verdict and the picture.
+    let mut subjects: Vec<&str> = Vec::new();
+    for warning in &summary.warnings {
+        if !subjects.contains(&warning.subject()) {
+            subjects.push(warning.subject());
+        }
+    }
+    let title = if summary.warnings.len() == 1 { "Warning" } else { "Warnings" };
+    let mut html = format!(
+        "<section id=\"warnings\" aria-labelledby=\"warnings-title\">\n<h2 class=\"unseen\" id=\"warnings-title\">Warnings</h2>\n\
+         <details>\n<summary><b>{title}</b>: {}</summary>\n<ul>\n",
+        escaped(&subjects.join("; "))
+    );
     for warning in &summary.warnings {
         // Some texts tell how often.
         let count = if warning.count > 1 && warning.code != crate::UNLOCATED {
@@ -190,7 +200,7 @@ fn warnings(summary: &Summary) -> String {
             with_code(warning.text.strip_prefix("warning: ").unwrap_or(&warning.text))
         );
     }
-    html.push_str("</ul>\n</section>");
+    html.push_str("</ul>\n</details>\n</section>");
     html
 }
 

@@ -5,6 +5,7 @@ use super::content::{LeftOut, ROUNDING, largest};
 use super::curves::{Curves, ForceCurve};
 use super::jolts::Jolts;
 use super::means::Filter;
+use super::notes::Note;
 use super::recorder::{NUMBERS, PageRecorder};
 use super::redundant::{Redundant, redundant};
 use super::scenery::ContactDrawn;
@@ -12,16 +13,18 @@ use crate::with_digits;
 use std::ops::Range;
 
 mod coincident;
+mod cut;
 mod energies;
 mod forces;
 mod motion;
 mod sections;
 mod units;
 
+pub(crate) use cut::Cut;
+use cut::cut_at;
 pub(crate) use forces::unseen_slip;
 pub(crate) use sections::after_impacts;
 use units::contact_sizes;
-use units::cut_at;
 pub(crate) use units::{LEAST_FORCE, Measure, Unit, Units, length_unit, prefix, time_unit};
 
 /// Where on the page a panel stands.
@@ -39,7 +42,7 @@ pub(crate) struct TimePanel {
     /// What its file and its place on the page are called.
     pub(crate) id: String,
     /// What is to be known to read it.
-    pub(crate) note: Option<String>,
+    pub(crate) notes: Vec<Note>,
     /// What is plotted.
     pub(crate) title: String,
     /// The contact whose it is, and its name where there are several.
@@ -285,6 +288,12 @@ impl Panels {
         }
     }
 
+    /// What is to be told of the impulses of impacts.
+    pub(crate) fn told_of_impacts(&self) -> String {
+        let stretch = with_digits(self.curves.longest_bucket(), "s", 2);
+        format!("the largest of every {stretch}, also at points that stay closed")
+    }
+
     /// The tangential force of all points of a contact together, if it is what is drawn.
     fn sum(&self, recorder: &PageRecorder, pair: usize) -> Option<Sum> {
         self.sums_tangential(pair).then_some(())?;
@@ -306,13 +315,13 @@ impl Panels {
         })
     }
 
-    /// Where the axes of a contact's normal and tangential forces end because peaks dwarf the rest, and the largest ones, N.
+    /// Where the axes of a contact's normal and tangential forces end because peaks dwarf the rest, N.
     pub(crate) fn cuts_of_contact(
         &self,
         recorder: &PageRecorder,
         pair: usize,
         means: &[Option<Vec<f64>>],
-    ) -> [Option<(f64, f64)>; 2] {
+    ) -> [Option<Cut>; 2] {
         let contact = &recorder.scenery.contacts[pair];
         if contact.has_duration {
             return [None; 2];

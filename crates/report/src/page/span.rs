@@ -4,6 +4,7 @@ use super::content::{holds, largest};
 use super::panels::{Measure, Units, after_impacts};
 use super::recorder::{BLOCK_FRAME, PageRecorder};
 use super::widths::for_any_width;
+use crate::first::first_of_largest;
 use crate::with_digits;
 use teeter_plot::{Axis, Figure, Legend, Panel, Series};
 
@@ -165,7 +166,7 @@ fn smooth(w: &[f64]) -> Vec<(f64, f64)> {
 fn chosen(times: &[f64], peaks: &[f64], run: f64) -> Vec<(usize, &'static str)> {
     let sizes: Vec<f64> = peaks.iter().map(|w| w.abs()).collect();
     let last = sizes.len() - 1;
-    let most = sizes.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(k, _)| k);
+    let most = first_of_largest(&sizes).unwrap_or(0);
     let mut chosen: Vec<(usize, &'static str)> = vec![(0, "start")];
     if last > 0 {
         chosen.push((last, "end"));
@@ -178,7 +179,9 @@ fn chosen(times: &[f64], peaks: &[f64], run: f64) -> Vec<(usize, &'static str)> 
     let mut more = 0;
     // A beam that swings up as far as down has a shape of each.
     let other_side = |k: &usize| peaks[*k] * peaks[most] < 0.0 && sizes[*k] > TELLING * sizes[most];
-    if let Some(k) = (0..=last).filter(other_side).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]))
+    let others: Vec<usize> = (0..=last).filter(other_side).collect();
+    let other_sizes: Vec<f64> = others.iter().map(|k| sizes[*k]).collect();
+    if let Some(k) = first_of_largest(&other_sizes).map(|first| others[first])
         && chosen.iter().all(|(other, _)| *other != k)
     {
         chosen.push((k, if peaks[k] > 0.0 { "largest upwards" } else { "largest downwards" }));

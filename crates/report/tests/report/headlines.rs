@@ -382,6 +382,30 @@ fn a_last_peak_is_told_with_what_it_counts_from() {
     assert!(blocks.summary.headline.contains("° against `plate` at t = "), "{}", blocks.summary.headline);
 }
 
+/// The beam bends under the block, which rocks about the line between its feet: the head of the page and its table of half cycles have one number.
+#[test]
+fn the_last_peak_on_a_beam_is_that_of_the_table_of_half_cycles() {
+    let rocks = scenario("free-rocking-on-beam");
+    let last = half_cycles(&rocks.page, &rocks.summary).iter().rev().find_map(|cycle| cycle.peak_after).unwrap();
+    let of_axis = rocks.summary.peaks.last().unwrap().phi;
+    assert!((of_axis - last).abs() > 2e-4, "nothing to tell apart: {of_axis} {last}");
+    let told = format!("last peak {:.2}° against the line between its feet at t = ", last.to_degrees());
+    assert!(rocks.summary.headline.contains(&told), "{}", rocks.summary.headline);
+    assert_eq!(rocks.summary.verdict[0].last_peak, Some(of_axis), "the file's counts from the axis, as its peaks");
+}
+
+/// It ends on its way to a peak, while the beam's vibration turns the line between its feet to and fro.
+#[test]
+fn a_beam_that_vibrates_makes_no_peak_of_a_swing_that_goes_on() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/held-beam.toml");
+    let held = run("held", &std::fs::read_to_string(path).unwrap());
+    let cycles = half_cycles(&held.page, &held.summary);
+    let [.., before, last] = &cycles[..] else { panic!("{cycles:?}") };
+    assert_eq!(last.peak_after, None, "−1.2° in the midst of a swing");
+    let told = format!("last peak {:.2}° against the line between its feet", before.peak_after.unwrap().to_degrees());
+    assert!(held.summary.headline.contains(&told), "{}", held.summary.headline);
+}
+
 /// "Overturned" alone leaves open that a stone isn't there any more.
 #[test]
 fn what_overturned_and_fell_off_its_beam_is_told_to() {

@@ -21,6 +21,13 @@ fn a_beam_on_columns_bends_from_the_line_through_its_ends_and_nothing_on_it_rock
     assert!(head[..head.find("</p>").unwrap()].contains("; see the warnings"));
     let warning = run.summary.warnings.iter().find(|warning| warning.code == "under-resolved").unwrap();
     assert!(!warning.text.contains("all together") && !warning.text.contains("  "), "{}", warning.text);
+    // A line says what they are about; what they say at length is folded below it.
+    let warnings = run.html.split_once("<section id=\"warnings\"").unwrap().1.split_once("</section>").unwrap().0;
+    let (line, folded) = warnings.split_once("</summary>").unwrap();
+    for warning in &run.summary.warnings {
+        assert!(line.contains(warning.subject()) && warning.subject() != warning.code, "{}", warning.code);
+    }
+    assert!(line.len() < 400 && !line.contains("take a step of at most") && folded.contains("take a step of at most"));
 }
 
 /// At the pictures, whose values are of one time, as are the rows of the trajectory: with deflections of both ends there.

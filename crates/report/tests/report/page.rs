@@ -107,6 +107,26 @@ pub(crate) fn assert_well_formed(name: &str, svg: &str) {
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
 }
 
+/// A bar is the largest of its stretch, and a point that stays closed while another lands has one, too: rows of `impacts.csv` alone don't make the bars.
+#[test]
+fn bars_of_impulses_say_what_they_are() {
+    let run = scenario("free-rocking-on-ground");
+    let forces = &data(&run.html)["forces"];
+    let told = forces["struck"].as_str().unwrap();
+    assert!(told.starts_with("the largest of every ") && told.contains("impacts.csv leaves out"), "{told}");
+    let (_, svg) = figures(&run.page).into_iter().find(|(file, _)| file == "contact_forces.svg").unwrap();
+    let words = svg.split('<').filter_map(|tag| tag.split_once('>')).flat_map(|(_, text)| text.split_whitespace());
+    let words = words.collect::<Vec<_>>().join(" ");
+    assert!(words.contains("also at points that stay closed"), "{words}");
+    // Each is one of the rows, or of a point that closes in none.
+    let rows: Vec<f64> = run.summary.impacts.iter().map(|row| row.impulse_n).collect();
+    for point in forces["points"].as_array().unwrap() {
+        for bar in numbers(&point["impacts"]).into_iter().filter(|bar| *bar > 0.0) {
+            assert!(rows.iter().any(|row| (row - bar).abs() < 1e-4 * row), "{bar} of {rows:?}");
+        }
+    }
+}
+
 #[test]
 fn pages_are_small_and_load_nothing() {
     for name in SCENARIOS {

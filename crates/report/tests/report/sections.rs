@@ -265,3 +265,15 @@ fn forces_of_contacts_and_of_beams_have_one_unit() {
     assert_eq!([reaction.as_str(), shear.as_str()], [contact.as_str(); 2]);
     assert_eq!(unit("energy"), unit("works"));
 }
+
+/// A beam that stands as it is has its largest values all along: which step of them is largest by rounding tells nothing.
+#[test]
+fn what_is_largest_all_along_is_so_from_the_start() {
+    let text = "[time]\nend = '0.2 s'\nstep = '100 us'\n[material.s]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n\
+        yield_strength = '235 MPa'\n[beam.t]\nmaterial = 's'\nspan = '2 m'\nwidth = '5 cm'\nthickness = '2 cm'\nelements = 12\n\
+        start = 'static'\nprobes = ['1 m']\nrecord = ['stress']\n[load.l]\non = 't'\nat = '0.7 m'\nforce = '-150 N'\n";
+    let run = crate::page::run("constant", text);
+    let stress = run.summary.beams[0].largest_stress.unwrap();
+    assert_eq!((run.summary.deflections[0].t, stress.t), (0.0, 0.0));
+    assert!(run.summary.deflections[0].w < -1e-3 && stress.stress > 1e7);
+}

@@ -3,7 +3,8 @@
 use super::column::{Column, SEEN, SEEN_BELOW_PEAKS};
 use super::{digits, time};
 use crate::page::curves::Does;
-use crate::page::panels::{Line, Panels, Place, Source, unseen_slip};
+use crate::page::notes::joined;
+use crate::page::panels::{Cut, Line, Panels, Place, Source, unseen_slip};
 use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, PageRecorder, coordinate_in};
 use crate::page::scenery::ContactDrawn;
 use crate::with_digits;
@@ -22,7 +23,7 @@ pub(super) struct PanelData {
     guides: Vec<f64>,
     /// Where the axis ends if peaks are cut.
     #[serde(skip_serializing_if = "Option::is_none")]
-    cut: Option<Cut>,
+    cut: Option<CutData>,
     /// The contact whose it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     contact: Option<usize>,
@@ -31,16 +32,16 @@ pub(super) struct PanelData {
     series: Vec<SeriesData>,
 }
 
-/// Where an axis ends, and the largest of what it cuts.
+/// Where an axis ends, and how far what it cuts goes.
 #[derive(Serialize)]
-struct Cut {
+struct CutData {
     limit: f64,
-    largest: f64,
+    reach: String,
 }
 
-impl Cut {
-    fn of((limit, largest): (f64, f64), factor: f64) -> Self {
-        Self { limit: digits(factor * limit), largest: digits(factor * largest) }
+impl CutData {
+    fn of(cut: Cut, unit: &str) -> Self {
+        Self { limit: digits(cut.limit), reach: cut.reach(unit) }
     }
 }
 
@@ -177,10 +178,12 @@ pub(super) struct ForceData {
     springs: Option<String>,
     /// What those of forces of rigid contacts show.
     rigid: String,
+    /// What those of impulses of impacts show.
+    struck: String,
     /// The unit of `impacts`: the prefix, and by what N s are multiplied.
     impulse_unit: (&'static str, f64),
     /// Where the axes of normal and tangential forces end if peaks are cut, by contacts, in their units.
-    cuts: Vec<[Option<Cut>; 2]>,
+    cuts: Vec<[Option<CutData>; 2]>,
     /// Contacts that only strike, without forces between impacts.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     forceless: Vec<usize>,
@@ -234,11 +237,11 @@ pub(super) fn time_panels(recorder: &PageRecorder, panels: &Panels) -> Vec<Panel
             _ => panel.title.clone(),
         },
         contact: panel.of_contact.as_ref().map(|(pair, _)| *pair),
-        note: panel.note.clone(),
+        note: joined(&panel.notes),
         unit: panel.unit.clone(),
         least: digits(panel.least),
         guides: panel.guides.iter().copied().map(digits).collect(),
-        cut: panel.cut_at().map(|cut| Cut::of(cut, 1.0)),
+        cut: panel.cut_at().map(|cut| CutData::of(cut, &panel.unit)),
         late: panel.place == Place::Forces,
         series: {
             let steps = if panel.cut { SEEN_BELOW_PEAKS } else { SEEN };
@@ -275,7 +278,8 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
     let (period, means) = panels.means_of_contacts(recorder);
     let cuts = |pair: usize| {
         let cuts = panels.cuts_of_contact(recorder, pair, &means).into_iter().zip(panels.force_units[pair]);
-        let mut cuts = cuts.map(|(cut, (_, factor))| cut.map(|cut| Cut::of(cut, factor)));
+        let mut cuts =
+            cuts.map(|(cut, (prefix, factor))| cut.map(|cut| CutData::of(cut.scaled(factor), &format!("{prefix}N"))));
         std::array::from_fn(|_| cuts.next().flatten())
     };
     let contacts = recorder.scenery.contacts.iter().enumerate();
@@ -326,6 +330,7 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         bucket: with_digits(panels.curves.longest_bucket(), "s", 2),
         rigid: panels.told_of_rigid(""),
         springs: panels.told_of_springs().filter(|_| !recorder.springs.is_empty()),
+        struck: format!("{}, which impacts.csv leaves out", panels.told_of_impacts()),
         impulse_unit: panels.impulse_unit,
         cuts: (0..recorder.scenery.contacts.len()).map(cuts).collect(),
         forceless: (0..panels.normal.len()).filter(|pair| !panels.normal[*pair]).collect(),

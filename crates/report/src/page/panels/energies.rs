@@ -2,6 +2,7 @@
 
 use super::{Curves, Line, Measure, Panels, Place, TimePanel};
 use crate::page::content::{ROUNDING, holds, largest};
+use crate::page::notes::Note;
 use crate::page::recorder::{ENERGIES, PageRecorder};
 
 /// What is said of it then.
@@ -51,7 +52,7 @@ impl Panels {
         let line = |(column, label, number, _)| Line::of(&self.curves, column, 1.0, label, number);
         TimePanel {
             id,
-            note: shared.then(|| SHARED.to_owned()),
+            notes: shared.then(|| Note::of_plot(SHARED)).into_iter().collect(),
             of_contact: None,
             description: format!("{title} of the scene over time"),
             title,

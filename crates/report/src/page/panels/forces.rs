@@ -2,6 +2,7 @@
 
 use super::{ForceCurve, Line, Measure, Panels, Place, TimePanel};
 use crate::page::content::{ROUNDING, holds, largest};
+use crate::page::notes::Note;
 use crate::page::recorder::PageRecorder;
 use crate::page::scenery::{ContactDrawn, PointDrawn};
 use teeter_integrator::ContactState;
@@ -100,7 +101,7 @@ impl Panels {
             });
             panels.push(TimePanel {
                 id: format!("slip-{pair}"),
-                note: differ(&points).then(|| WHILE_IT_PRESSES.to_owned()),
+                notes: differ(&points).then(|| Note::of_plot(WHILE_IT_PRESSES)).into_iter().collect(),
                 title: "Slip".to_owned(),
                 of_contact: Some((pair, if several { name } else { String::new() })),
                 description: "Slip of the contacts over time".to_owned(),

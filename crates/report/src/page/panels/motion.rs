@@ -3,6 +3,7 @@
 use super::{Curves, Line, Measure, Panels, Place, Portrait, PortraitLine, Source, TimePanel, coincident};
 use crate::driven::Driven;
 use crate::page::content::{ROUNDING, holds, largest, travel};
+use crate::page::notes::Note;
 use crate::page::orbit::Point;
 use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, PageRecorder, coordinate_in};
 use crate::page::scenery::{BeamDrawn, FREE};
@@ -118,20 +119,23 @@ impl Panels {
             Line::from_zero(curves, source, block_label(recorder, k), k)
         };
         let guides = if c == PHI { critical_angles(recorder, &moving, factor) } else { Vec::new() };
-        let panel = |id: &str, title: &str, (measure, unit): (Measure, String), lines, guides, least, note| TimePanel {
-            id: id.to_owned(),
-            note,
-            of_contact: None,
-            title: title.to_owned(),
-            description: format!("{title} of the blocks over time"),
-            measure,
-            unit,
-            least,
-            guides,
-            cut: false,
-            place: Place::Motion,
-            lines,
-        };
+        let panel =
+            |id: &str, title: &str, (measure, unit): (Measure, String), lines, guides, least, note: Option<Note>| {
+                TimePanel {
+                    id: id.to_owned(),
+                    notes: note.into_iter().collect(),
+                    of_contact: None,
+                    title: title.to_owned(),
+                    description: format!("{title} of the blocks over time"),
+                    measure,
+                    unit,
+                    least,
+                    guides,
+                    cut: false,
+                    place: Place::Motion,
+                    lines,
+                }
+            };
         let lines = moving.iter().map(|(k, _)| line(&self.curves, *k, c, zero(*k), factor)).collect();
         let on = from_ground(recorder, &self.curves, c);
         let name = format!("{}{on}{of_whom}", if from_start { coordinate.from_start } else { coordinate.name });
@@ -198,7 +202,7 @@ impl Panels {
         let note = (!free.is_empty()).then(|| {
             let holds =
                 if several { format!("of {}, which no support holds, ", free.join(", ")) } else { String::new() };
-            format!("{holds}measured from the line through the ends of the beam")
+            Note::of_plot(format!("{holds}measured from the line through the ends of the beam"))
         });
         let only_middle = drawn.len() == 1 && !several && drawn[0].0.starts_with(MIDSPAN);
         let lines = drawn.into_iter().map(|(label, column, number)| {
@@ -208,7 +212,7 @@ impl Panels {
         let lines = lines.collect();
         self.panels.push(TimePanel {
             id: "w_mid".to_owned(),
-            note,
+            notes: note.into_iter().collect(),
             of_contact: None,
             title: if only_middle { "Deflection at midspan w" } else { "Deflection w" }.to_owned(),
             description: "Deflection of the beams over time".to_owned(),
@@ -264,7 +268,7 @@ impl Panels {
                 self.panels.push(TimePanel {
                     id: if turns { format!("{id}_phi") } else { id.to_owned() },
                     description: format!("{title} over time"),
-                    note: None,
+                    notes: Vec::new(),
                     of_contact: None,
                     title,
                     measure,
@@ -438,13 +442,13 @@ mod strong_parts {
 const UNSEEN: f64 = 5e-3;
 
 /// Says of which bodies the curves are too small to be seen beside the others, with how far they go.
-fn unseen(bodies: impl Iterator<Item = (String, f64)>, size: impl Fn(f64) -> String) -> Option<String> {
+fn unseen(bodies: impl Iterator<Item = (String, f64)>, size: impl Fn(f64) -> String) -> Option<Note> {
     let bodies: Vec<(String, f64)> = bodies.collect();
     let most = bodies.iter().fold(0.0, |most: f64, (_, far)| most.max(*far));
     // What is 0, or rounding beside the others, is seen as it is.
     let small = bodies.iter().filter(|(_, far)| (ROUNDING * most..UNSEEN * most).contains(far) && *far > 0.0);
     let told: Vec<String> = small.map(|(name, far)| format!("{name} (up to {})", size(*far))).collect();
-    (!told.is_empty()).then(|| format!("too small to be seen here: {}", told.join(", ")))
+    (!told.is_empty()).then(|| Note::of_plot(format!("too small to be seen here: {}", told.join(", "))))
 }
 
 /// A portrait in which the velocity turns more often than this is a solid area: then as many turns as [`STRONG`] are drawn strong, the rest pale.
@@ -549,7 +553,7 @@ mod tests {
             unseen(far.into_iter().zip(["a", "b", "c"]).map(|(far, name)| (name.to_owned(), far)), |x| x.to_string())
         };
         assert_eq!(told([1.0, 0.0, 1e-17]), None);
-        assert_eq!(told([1.0, 0.0, 1e-3]).unwrap(), "too small to be seen here: c (up to 0.001)");
+        assert_eq!(told([1.0, 0.0, 1e-3]).unwrap().text, "too small to be seen here: c (up to 0.001)");
         assert_eq!(told([0.0; 3]), None);
     }
 }

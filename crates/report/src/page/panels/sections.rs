@@ -4,6 +4,7 @@ use super::{Line, Measure, Panels, Place, TimePanel};
 use crate::page::content::{holds, largest};
 use crate::page::jolts::Jolts;
 use crate::page::means::Filter;
+use crate::page::notes::Note;
 use crate::page::recorder::PageRecorder;
 use crate::page::scenery::ContactDrawn;
 use crate::sections::Kind;
@@ -95,10 +96,13 @@ impl Panels {
             } else {
                 "without vibrations of periods below"
             };
-            let pale = (!over.is_empty()).then(|| format!("pale: all steps; strong: {strong} {}", filter.told()));
+            let mut notes = Vec::new();
+            if !over.is_empty() {
+                notes.push(Note::of_pale("pale: all steps"));
+                notes.push(Note::of_plot(format!("strong: {strong} {}", filter.told())));
+            }
             let peaks = (kind != Kind::AxialForce).then(|| after_impacts(recorder)).flatten();
-            let note = pale.into_iter().chain(peaks.map(str::to_owned)).collect::<Vec<_>>().join("; ");
-            let note = (!note.is_empty()).then_some(note);
+            notes.extend(peaks.map(Note::of_plot));
             lines.extend(over);
             // What is pale stays behind all else.
             lines.sort_by_key(|line| if line.is_raw { (0, 0) } else { (1, line.number) });
@@ -106,7 +110,7 @@ impl Panels {
                 serde_json::to_value(kind).ok().and_then(|word| word.as_str().map(str::to_owned)).unwrap_or_default();
             self.panels.push(TimePanel {
                 id: format!("section-{id}"),
-                note,
+                notes,
                 of_contact: None,
                 title: title.to_owned(),
                 description: format!("{title} over time"),

@@ -1,6 +1,7 @@
 //! The units of the page: one for each kind of quantity, where its values lie so near to each other that one suits all.
 
 use super::TimePanel;
+use super::cut::{Cut, cut_at};
 use crate::page::content::largest;
 use crate::page::curves::ForceCurve;
 use crate::page::recorder::PageRecorder;
@@ -112,14 +113,14 @@ impl Units {
 }
 
 impl TimePanel {
-    /// Where its axis ends because peaks dwarf the rest, or what rings its mean, and the largest of them.
-    pub(crate) fn cut_at(&self) -> Option<(f64, f64)> {
+    /// Where its axis ends because peaks dwarf the rest, or what rings its mean.
+    pub(crate) fn cut_at(&self) -> Option<Cut> {
         cut_at(self.lines.iter().map(|line| (line.is_raw, line.y.as_slice())), self.least).filter(|_| self.cut)
     }
 
     /// How large its values are that are seen.
     pub(super) fn size(&self) -> f64 {
-        self.cut_at().map_or_else(|| largest(self.lines.iter().flat_map(|line| &line.y)), |(limit, _)| limit)
+        self.cut_at().map_or_else(|| largest(self.lines.iter().flat_map(|line| &line.y)), |cut| cut.limit)
     }
 
     /// Turns its values from SI units into this one.
@@ -163,7 +164,7 @@ pub(crate) fn time_unit(duration: f64) -> Unit {
 /// The largest of forces as they are seen: where the peaks of impacts dwarf all else and are cut, the size at which they are.
 fn seen<'a>(curves: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
     let most = largest(curves.clone().flatten());
-    cut_at(curves.map(|curve| (false, curve)), LEAST_FORCE * most).map_or(most, |(limit, _)| limit)
+    cut_at(curves.map(|curve| (false, curve)), LEAST_FORCE * most).map_or(most, |cut| cut.limit)
 }
 
 /// How large normal and tangential forces of each contact are, as they are seen, N.
@@ -176,39 +177,6 @@ pub(super) fn contact_sizes(recorder: &PageRecorder, forces: &[Option<ForceCurve
         parts.map(|part| if has_springs { largest(own.clone().flat_map(part)) } else { seen(own.clone().map(part)) })
     };
     recorder.scenery.contacts.iter().map(of).collect()
-}
-
-/// A force this many times the one that nine of ten samples stay below is a peak of an impact, whose height is that of
-/// the sample's length; the axis then ends at half as much, for the rest to be legible.
-const PEAK: f64 = 6.0;
-
-/// What rings by this many times the largest mean would make all means one line; the axis then ends at half as much.
-const RINGS: f64 = 3.0;
-
-/// Where the axis of these curves ends because peaks dwarf the rest, or what rings its mean, and the largest of all: the one rule for page and
-/// figures. Each curve is told with whether it stays pale behind a mean; values of no more than `least` count as none.
-///
-/// However many curves are small, none of the others is cut below what it bears on average over the run.
-pub(crate) fn cut_at<'a>(curves: impl Iterator<Item = (bool, &'a [f64])> + Clone, least: f64) -> Option<(f64, f64)> {
-    let all = largest(curves.clone().flat_map(|(_, y)| y));
-    let strong = || curves.clone().filter(|(is_raw, _)| !is_raw).map(|(_, y)| y);
-    let means = largest(strong().flatten());
-    let limit = if curves.clone().any(|(is_raw, _)| is_raw) && means > 0.0 && all > RINGS * means {
-        0.5 * RINGS * means
-    } else {
-        let mut sizes: Vec<f64> = curves.clone().flat_map(|(_, y)| y).map(|y| y.abs()).collect();
-        sizes.retain(|y| y.is_finite() && *y > least);
-        sizes.sort_by(f64::total_cmp);
-        let usual = sizes.get(sizes.len() * 9 / 10)?;
-        if all > PEAK * usual { 0.5 * PEAK * usual } else { all }
-    };
-    let limit = strong().map(borne).fold(limit, f64::max);
-    (limit < all).then_some((limit, all))
-}
-
-/// How large a curve is on average.
-fn borne(y: &[f64]) -> f64 {
-    y.iter().filter(|y| y.is_finite()).map(|y| y.abs()).sum::<f64>() / y.len().max(1) as f64
 }
 
 /// A force below this part of the largest is none.
@@ -262,21 +230,6 @@ mod tests {
         assert_eq!((seen(&forces), prefix(seen(&forces)).0), (42.0, ""));
         assert_eq!(seen(&[14.0, 20.0, 0.0]), 20.0);
         assert_eq!(seen(&[]), 0.0);
-    }
-
-    #[test]
-    fn small_curves_cut_no_loaded_one() {
-        let loaded: Vec<f64> = (0..100).map(|k| if k % 2 == 0 { 10.0 } else { 0.0 }).collect();
-        let [hump, chatter] = [vec![0.5; 3], vec![0.01; 100]];
-        let cut = |curves: &[(bool, &[f64])]| cut_at(curves.iter().copied(), 1e-6);
-        // A point that touched a few times, and many that hardly press.
-        assert_eq!(cut(&[(false, &loaded), (false, &hump)]), None);
-        let many: Vec<(bool, &[f64])> =
-            std::iter::once((false, &loaded[..])).chain((0..20).map(|_| (false, &chatter[..]))).collect();
-        assert_eq!(cut(&many), Some((5.0, 10.0)), "not at 0.03: the mean is 5");
-        // What rings is cut by its mean; without one that is larger than nothing, by nothing.
-        assert_eq!(cut(&[(true, &loaded), (false, &hump)]), Some((0.75, 10.0)));
-        assert_eq!(cut(&[(true, &loaded), (false, &[0.0])]), None);
     }
 
     #[test]
