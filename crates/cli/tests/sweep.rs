@@ -315,6 +315,11 @@ fn what_is_wrong_in_a_sweep_file_is_told_with_its_place_and_a_remedy() {
             &["outputs.x.mx", "did you mean `max`?"],
         ),
         (
+            "name",
+            "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n[outputs]\n\"a\\nb\" = \"t\"\n",
+            &["the name of a column is one line of text", "take another name"],
+        ),
+        (
             "spectrum",
             "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n[outputs]\nx = { spectral_acceleration = \"0 s\" }\n\
                 y = { spectral_acceleration = \"2 m\" }\nz = { spectral_acceleration = \"1 s\", max = \"rocker.phi\" }\n",

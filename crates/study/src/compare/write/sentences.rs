@@ -100,9 +100,12 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
             Some(format!("{} by {}{gap}{unit}", found.channel.word(), power(factor * found.held?.rms)))
         });
         texts.push(format!(
-            "before t = 0 both blocks are held: {} more rows count for the alignment, but not into the differences; in them the motions are \
-             apart (root mean square) {}",
-            comparison.held.len(),
+            "before t = 0 both blocks are held: {} for the alignment, but not into the differences; the motions are apart there (root \
+             mean square) {}",
+            match comparison.held.len() {
+                1 => "1 more row counts".to_owned(),
+                rows => format!("{rows} more rows count"),
+            },
             apart.collect::<Vec<_>>().join(", ")
         ));
     }
