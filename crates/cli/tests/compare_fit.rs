@@ -579,6 +579,7 @@ fn the_offset_that_is_told_is_that_of_the_rows_for_which_it_promises() {
         .unwrap();
     let (text, _) = compare(&["--shift", "0 s"]);
     assert!(text.contains("1 more row counts for the alignment"), "{text}");
+    assert!(!text.contains(" °"), "{text}");
 }
 
 #[test]
