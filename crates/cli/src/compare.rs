@@ -162,13 +162,13 @@ fn write_all(
     results.write("compare.json", json(comparison, block, run, measured))?;
     let mut text = String::new();
     for found in comparison.channels.iter().filter(|found| found.differences.rows > 0) {
-        let (unit, factor) = found.channel.shown();
+        let ((_, factor), unit) = (found.channel.shown(), found.channel.shown_after(" "));
         let d = found.differences;
         // What was measured may not move at all.
         let share =
             if d.scale > 0.0 { format!(" ({:.1} % of the largest)", 100.0 * d.rms / d.scale) } else { String::new() };
         text += &format!(
-            "{}: root mean square difference {} {unit}{share}, at most {} {unit} at t = {:.4} s\n",
+            "{}: root mean square difference {}{unit}{share}, at most {}{unit} at t = {:.4} s\n",
             found.channel.title(),
             shortest(factor * d.rms, 2),
             shortest(factor * d.max, 2),

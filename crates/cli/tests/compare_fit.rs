@@ -481,7 +481,10 @@ fn bad_measured_tables_are_refused_with_their_line() {
     refused(&["compare", "run", "good.csv", "--column", "fi=phi"], "there is no quantity `fi`");
     refused(&["compare", "run", "good.csv", "--block", "b"], "no block `b`; the run has `rocker`");
     refused(&["compare", "run", "good.csv", "--window", "4"], "an odd number of rows");
-    refused(&["compare", "run", "good.csv", "--shift", "100 s"], "fewer than 8 rows in common");
+    refused(
+        &["compare", "run", "good.csv", "--shift", "100.0000000001 s"],
+        "fewer than 8 rows in common, with the time shift 100.00000 s",
+    );
     let fit = |vary: &str, says: &str| refused(&["fit", &scene, "good.csv", "--out", "out", "--vary", vary], says);
     let still: String = (0..20).map(|k| format!("{},0.0{k},0\n", 0.01 * f64::from(k))).collect();
     std::fs::write(folder.join("still.csv"), format!("t,phi,x\n{still}")).unwrap();
@@ -571,6 +574,12 @@ fn the_offset_that_is_told_is_that_of_the_rows_for_which_it_promises() {
     let (_, rms) = compare(&["--offset", &offset]);
     // Told to two digits.
     assert!((rms / promised.parse::<f64>().unwrap() - 1.0).abs() < 0.06, "{rms}°, not {promised}°: {text}");
+    let (held, seen): (Vec<_>, Vec<_>) = rows.lines().partition(|row| row.starts_with('-'));
+    std::fs::write(folder.join("off.csv"), format!("t,phi (deg)\n{}\n{}\n", held[held.len() - 1], seen.join("\n")))
+        .unwrap();
+    let (text, _) = compare(&["--shift", "0 s"]);
+    assert!(text.contains("1 more row counts for the alignment"), "{text}");
+    assert!(!text.contains(" °"), "{text}");
 }
 
 #[test]

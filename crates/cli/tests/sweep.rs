@@ -230,6 +230,24 @@ fn bands_say_of_how_many_cases_they_are_past_the_end_of_some() {
 }
 
 #[test]
+fn the_example_of_the_page_can_be_run() {
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let read = |path: &str| std::fs::read_to_string(repository.join(path)).unwrap();
+    let page = read("docs/sweep.md");
+    let example = page.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    let folder = study("page", example);
+    let scene = read("sweeps/block-on-ground.toml").replace("66 s", "0.5 s");
+    let scene = scene.replace("../scenarios/rocking-under-earthquake.csv", "records/one.AT2");
+    std::fs::write(folder.join("rocking.toml"), scene).unwrap();
+    std::fs::create_dir(folder.join("records")).unwrap();
+    std::fs::copy(repository.join("fuzz/corpus/record/peer-new"), folder.join("records/one.AT2")).unwrap();
+    done(&folder, &["sweep", "sweep.toml", "--out", "part", "--shard", "1/5000"]);
+    let rows = std::fs::read_to_string(folder.join("part/results.csv")).unwrap();
+    let complete = rows.lines().filter(|row| row.contains(",false,complete,0,")).count();
+    assert_eq!((rows.lines().count(), complete), (1 + 3, 3), "of 10800 cases: {rows}");
+}
+
+#[test]
 fn a_case_that_is_refused_is_a_row() {
     let sweep = "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\", \"100 deg\"]\n";
     let folder = study("refused", sweep);
@@ -313,6 +331,11 @@ fn what_is_wrong_in_a_sweep_file_is_told_with_its_place_and_a_remedy() {
             "output",
             "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n[outputs]\nx = { mx = \"rocker.phi\" }\n",
             &["outputs.x.mx", "did you mean `max`?"],
+        ),
+        (
+            "name",
+            "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n[outputs]\n\"a\\nb\" = \"t\"\n",
+            &["the name of a column is one line of text", "take another name"],
         ),
         (
             "spectrum",

@@ -1,7 +1,7 @@
 //! What the equilibrium of a static start depends on: cases of a study with the same one share it.
 
 use crate::scene::{BeamScene, BlockPart, BlockScene, ContactScene, LoadKind, Matter, Placement, Reduction, Scene};
-use crate::static_start::InitialConfiguration;
+use crate::static_start::{InitialConfiguration, is_held};
 use std::sync::Arc;
 use teeter_beam::BeamSpec;
 use teeter_integrator::PairLaw;
@@ -32,9 +32,14 @@ impl EquilibriumKey {
         numbers.extend(start.ground);
         numbers.extend(start.poses.iter().flatten());
         numbers.extend(start.deflections.iter().flatten());
-        let frictions =
-            scene.contacts.iter().flat_map(|of| of.feet_friction.into_iter().flatten().chain([of.law.friction]));
-        numbers.extend(frictions);
+        // Nothing strikes, and what holds a tilted block at its foot isn't the friction of its contact.
+        let at_rest = |of: &ContactScene| {
+            let (friction, feet_friction) =
+                if is_held(scene, of) { (0.0, [None; 2]) } else { (of.law.friction, of.feet_friction) };
+            ContactScene { law: PairLaw::new(friction, 0.0), feet_friction, ..of.clone() }
+        };
+        let contacts: Vec<ContactScene> = scene.contacts.iter().map(at_rest).collect();
+        numbers.extend(contacts.iter().flat_map(|of| of.feet_friction.into_iter().flatten().chain([of.law.friction])));
         numbers.extend(scene.forces.iter().flat_map(|of| [of.force[0], of.force[1], of.couple]));
         let histories = scene.forces.iter().map(|of| &of.history).chain(scene.loads.iter().map(|of| &of.history));
         numbers.extend(histories.map(|history| history.signal().value(0.0)));
@@ -49,11 +54,9 @@ impl EquilibriumKey {
             let BlockScene { width, height, parts, matter, placement, motion, .. } = of;
             ([*width, *height], parts.clone(), *matter, *placement, motion.0.each_ref().map(Option::is_some))
         };
-        // Nothing strikes.
-        let at_rest = |of: &ContactScene| ContactScene { law: PairLaw::new(of.law.friction, 0.0), ..of.clone() };
         Self {
             numbers: numbers.into_iter().map(f64::to_bits).collect(),
-            contacts: scene.contacts.iter().map(at_rest).collect(),
+            contacts,
             ground: scene.ground.as_ref().map(|ground| (ground.incline, ground.motion.is_given())),
             beams: scene.beams.iter().map(of_beam).collect(),
             blocks: scene.blocks.iter().map(of_block).collect(),

@@ -10,7 +10,7 @@ use crate::driven::{self, BeamModel};
 use crate::equilibrium_key::EquilibriumKey;
 use crate::placement::{self, InstabilityMode, PlacementError, carried_by, starting_poses};
 use crate::resolve::SharedParts;
-use crate::scene::{Placement, Scene, SupportingBody};
+use crate::scene::{ContactScene, Placement, Scene, SupportingBody};
 use crate::simulation::{BlockBody, BuildError, Pairs, detector};
 use nalgebra::{Vector2, Vector3};
 use std::collections::BTreeSet;
@@ -266,6 +266,11 @@ fn foot_of(scene: &Scene, block: usize) -> Option<usize> {
     }
 }
 
+/// Whether a contact is one of a block that is held as placed: its own friction then plays no part.
+pub(crate) fn is_held(scene: &Scene, contact: &ContactScene) -> bool {
+    [Some(contact.block), contact.other_block()].into_iter().flatten().any(|block| foot_of(scene, block).is_some())
+}
+
 /// The blocks that prop these beams from below, and those that carry them.
 fn props(scene: &Scene, beams: &[usize]) -> BTreeSet<usize> {
     let below = scene.contacts.iter().filter(|contact| {
@@ -397,8 +402,8 @@ impl StaticModel {
             let block = part(contact.block);
             if let Some(other) = contact.other_block() {
                 let (Some(block), Some(other_part)) = (block, part(other)) else { continue };
-                let held = [contact.block, other].into_iter().any(|block| foot_of(scene, block).is_some());
-                let law = parts.law(PairLaw::new(if held { HELD_FRICTION } else { contact.law.friction }, 0.0));
+                let law = parts
+                    .law(PairLaw::new(if is_held(scene, contact) { HELD_FRICTION } else { contact.law.friction }, 0.0));
                 let (pair, bodies) = (contacts.len() as u32, [block, other_part].map(body));
                 pairs.shapes.push(ShapePair { pair, law, bodies });
                 contacts.push(EquilibriumPair { contact: number, corners: Vec::new(), is_of_sides: false });
@@ -408,16 +413,16 @@ impl StaticModel {
             let (Some(block), Some((_, place))) = (block, surface) else { continue };
             let (kinematics, surface) = (contact.kinematics, place.nth_body(contact.face.body()));
             if contact.sides && on_beams == Points::All {
-                let held = foot_of(scene, contact.block).is_some();
-                let law = parts.law(PairLaw::new(if held { 0.0 } else { contact.law.friction }, 0.0));
+                let law =
+                    parts.law(PairLaw::new(if is_held(scene, contact) { 0.0 } else { contact.law.friction }, 0.0));
                 let (pair, surface) = (contacts.len() as u32, place.nth_body(contact.face.fibre()));
                 pairs.sides.push(SidePair { pair, law, body: body(block), surface, kinematics });
                 contacts.push(EquilibriumPair { contact: number, corners: Vec::new(), is_of_sides: true });
             }
             let (corners, is_round) = (&start.blocks[contact.block].corners, start.blocks[contact.block].is_round);
             if is_round {
-                let held = foot_of(scene, contact.block).is_some();
-                let law = parts.law(PairLaw::new(if held { HELD_FRICTION } else { contact.law.friction }, 0.0));
+                let law = parts
+                    .law(PairLaw::new(if is_held(scene, contact) { HELD_FRICTION } else { contact.law.friction }, 0.0));
                 let pair = contacts.len() as u32;
                 pairs.surfaces.push(SurfacePair { pair, law, body: body(block), surface, kinematics });
                 let corners = (0..corners.len()).collect();

@@ -84,10 +84,18 @@ fn the_second_case_makes_no_beam_factor_equilibrium_or_table_again() {
     assert!((first.beams, first.equilibria) == (1, 1) && first.factors > 1, "{first:?}");
     let all = assert_same("sweeps/block-on-beam.toml", &peaks).counts();
     assert_eq!(all, first);
-    // The equilibrium depends on the friction; beam and factors don't.
+    // The equilibrium of a flat block depends on the friction; beam and factors don't.
     let frictions = ["0.5", "0.4", "0.5"].map(|friction| vec![("contact.feet.friction", friction)]);
     let counts = assert_same("sweeps/block-on-beam.toml", &frictions).counts();
     assert_eq!((counts.beams, counts.equilibria, counts.factors), (1, 2, first.factors));
+    // A tilted block is held at its foot, whatever the friction there.
+    for (file, key) in [
+        ("sweeps/block-on-beam.toml", "contact.feet.friction"),
+        ("scenarios/two-blocks-on-beam.toml", "contact.joint.friction"),
+    ] {
+        let cases = ["0.5", "0.4", "0.6"].map(|friction| vec![("block.rocker.tilt", "2 deg"), (key, friction)]);
+        assert_eq!(assert_same(file, &cases).counts().equilibria, 1, "{file}");
+    }
     // Nothing strikes in it.
     let restitutions = ["0", "0.3"].map(|restitution| vec![("contact.feet.restitution", restitution)]);
     assert_eq!(assert_same("sweeps/block-on-beam.toml", &restitutions).counts().equilibria, 1);

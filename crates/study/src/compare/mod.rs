@@ -42,8 +42,9 @@ pub struct CompareSettings {
 pub enum CompareError {
     /// They don't overlap in time.
     #[error(
-        "the measured motion from t = {from} s to {to} s and the run up to {end} s have fewer than {least} rows in common, \
-         with the time shift {shift} s{hint}"
+        "the measured motion from t = {} s to {} s and the run up to {} s have fewer than {least} rows in common, \
+         with the time shift {} s{hint}",
+        fixed(*from, 4), fixed(*to, 4), fixed(*end, 4), fixed(*shift, 5)
     )]
     Apart {
         /// Begin of the measured motion, in its own time, s.

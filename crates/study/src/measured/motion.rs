@@ -71,6 +71,15 @@ impl Channel {
         }
     }
 
+    /// That unit as it stands after a number: the sign of degrees follows at once, others after `blank`.
+    #[must_use]
+    pub fn shown_after(self, blank: &str) -> String {
+        match self.shown() {
+            ("°", _) => "°".to_owned(),
+            (unit, _) => format!("{blank}{unit}"),
+        }
+    }
+
     /// Whether its origin is arbitrary in a measured motion: a position in the frame of a camera.
     #[must_use]
     pub fn has_own_origin(self) -> bool {

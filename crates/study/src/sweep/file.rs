@@ -156,6 +156,11 @@ impl Sweep {
                 let rule = "a column of that name is in the results already";
                 reader.wrong(&format!("outputs.{name}"), None, rule, "take another name");
             }
+            // The header of the table is one line, in which the column is found again by its name.
+            if name.is_empty() || name.contains(char::is_control) {
+                let rule = "the name of a column is one line of text";
+                reader.wrong(&format!("outputs.{name}"), None, rule, "take another name");
+            }
         }
         let searched = self.find.iter().flat_map(|find| std::iter::once(find.key.as_str()).chain(find::COLUMNS));
         let columns: Vec<&str> = keys.iter().copied().chain(searched).chain(names.iter().copied()).collect();

@@ -43,9 +43,8 @@ const QUANTITY_HEADING: [&str; 8] = [
 ];
 
 fn quantity_row(found: &ChannelComparison) -> Vec<String> {
-    let (unit, factor) = found.channel.shown();
+    let ((_, factor), unit) = (found.channel.shown(), found.channel.shown_after("\u{a0}"));
     let d = found.differences;
-    let unit = if unit == "°" { unit.to_owned() } else { format!("\u{a0}{unit}") };
     if d.rows == 0 {
         let mut cells = vec!["–".to_owned(); QUANTITY_HEADING.len()];
         found.channel.title().clone_into(&mut cells[0]);
@@ -104,8 +103,7 @@ fn headline(comparison: &Comparison) -> String {
         return String::new();
     };
     let d = found.differences;
-    let (unit, factor) = found.channel.shown();
-    let gap = if unit == "°" { "" } else { "\u{a0}" };
+    let ((_, factor), unit) = (found.channel.shown(), found.channel.shown_after("\u{a0}"));
     let share = if d.rms < MOST_SHARE * d.scale {
         format!(", {} of the largest", percent(d.rms / d.scale))
     } else {
@@ -113,7 +111,7 @@ fn headline(comparison: &Comparison) -> String {
     };
     let last = comparison.measured.t.get(comparison.rows.end.saturating_sub(1)).copied().unwrap_or(0.0);
     let mut text = format!(
-        "{}: root mean square difference {}{gap}{unit}{share}, up to t = {}\u{a0}s",
+        "{}: root mean square difference {}{unit}{share}, up to t = {}\u{a0}s",
         found.channel.title(),
         power(factor * d.rms),
         short(last)

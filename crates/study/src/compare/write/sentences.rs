@@ -95,14 +95,16 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
     });
     if !comparison.held.is_empty() {
         let apart = comparison.channels.iter().filter(|found| found.is_measured).filter_map(|found| {
-            let (unit, factor) = found.channel.shown();
-            let gap = if unit == "°" { "" } else { " " };
-            Some(format!("{} by {}{gap}{unit}", found.channel.word(), power(factor * found.held?.rms)))
+            let ((_, factor), unit) = (found.channel.shown(), found.channel.shown_after(" "));
+            Some(format!("{} by {}{unit}", found.channel.word(), power(factor * found.held?.rms)))
         });
         texts.push(format!(
-            "before t = 0 both blocks are held: {} more rows count for the alignment, but not into the differences; in them the motions are \
-             apart (root mean square) {}",
-            comparison.held.len(),
+            "before t = 0 both blocks are held: {} for the alignment, but not into the differences; the motions are apart there (root \
+             mean square) {}",
+            match comparison.held.len() {
+                1 => "1 more row counts".to_owned(),
+                rows => format!("{rows} more rows count"),
+            },
             apart.collect::<Vec<_>>().join(", ")
         ));
     }
@@ -256,10 +258,10 @@ fn without_motion(motion: &MeasuredMotion, found: &ChannelComparison) -> Option<
         return Some(format!("the measured {word} is the same in all rows: is it the right column?"));
     }
     // Smoothing leaves less than the noise of the rows.
-    let (unit, factor) = found.channel.shown();
+    let ((_, factor), unit) = (found.channel.shown(), found.channel.shown_after(" "));
     (spread <= found.measured.noise).then(|| {
         format!(
-            "the measured {word} doesn’t rise above its noise, whose standard deviation is {} {unit}: is it the right column?",
+            "the measured {word} doesn’t rise above its noise, whose standard deviation is {}{unit}: is it the right column?",
             power(factor * found.measured.noise)
         )
     })
