@@ -49,6 +49,9 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     summits: Vec<ContactId>,
     /// The mean velocity of the motion that was tried, and the coordinates in its middle; memory.
     mean: Vec<f64>,
+    /// The mean velocities of the motion in whose middle frames are, and by what those of the motion found with them differed.
+    guessed: Vec<f64>,
+    residual: Vec<f64>,
     q_tried: Vec<f64>,
     middle: Candidates<D>,
     /// Of each of these, at q̃_m and at q̃, how far it is to the end of its surface, m.
@@ -66,6 +69,8 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     pub(crate) closed: Vec<ContactId>,
     /// Those of them that have been looked at in this step, and those that are new.
     looked: Vec<ContactId>,
+    /// Whether the frames of summits in motion were sought in vain in this step.
+    summits_lost: bool,
     pub(crate) new: Vec<ContactId>,
     /// What was found of the new ones.
     found: Candidates<D>,
@@ -124,6 +129,8 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             q_mid: Vec::new(),
             summits: Vec::new(),
             mean: Vec::new(),
+            guessed: Vec::new(),
+            residual: Vec::new(),
             q_tried: Vec::new(),
             middle: Vec::new(),
             rooms: [const { Vec::new() }; 2],
@@ -134,6 +141,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             row: ContactRows::default(),
             closed: Vec::new(),
             looked: Vec::new(),
+            summits_lost: false,
             new: Vec::new(),
             found: Vec::new(),
             found_rooms: Vec::new(),
@@ -228,6 +236,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         self.v_free.clear();
         self.v_free.extend_from_slice(self.step.v_end());
         self.looked.clear();
+        self.summits_lost = false;
         self.tried.clear();
         self.stage.keep_islands_anew();
         Ok(())
@@ -329,7 +338,9 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
     fn resize(&mut self, model: &Model<D>) {
         self.v_free.resize(model.size().v, 0.0);
         self.q_mid.resize(model.size().q, 0.0);
-        self.mean.resize(model.size().v, 0.0);
+        for velocities in [&mut self.mean, &mut self.guessed, &mut self.residual] {
+            velocities.resize(model.size().v, 0.0);
+        }
         self.q_tried.resize(model.size().q, 0.0);
         self.q_ahead.resize(model.size().q, 0.0);
         if self.rigid.len() != model.parts().len() {
@@ -341,12 +352,16 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
     /// step: the free motion is the same for all its attempts. Once these are of the motion that was found, so are those of
     /// contacts that close later.
     fn look_ahead(&mut self, model: &Model<D>, state: &State, h: f64, work: &mut Workspace<D>) -> Result<(), Mismatch> {
-        // ½(v⁰ + v_free), the mean velocity of the free motion.
-        let mean = self.step.v_end_mut();
-        mean.iter_mut().zip(&self.v_free).zip(&state.v).for_each(|((v, free), v0)| *v = 0.5 * (free + v0));
         if self.looked.is_empty() {
-            model.move_along(&state.q, mean, h, &mut self.q_ahead);
-            model.move_along(&state.q, mean, 0.5 * h, &mut self.q_mid);
+            match self.follows_summits(model) {
+                true => self.guessed.copy_from_slice(&state.v),
+                // ½(v⁰ + v_free), the mean velocity of the free motion.
+                false => {
+                    let both = self.v_free.iter().zip(&state.v);
+                    self.guessed.iter_mut().zip(both).for_each(|(v, (free, v0))| *v = 0.5 * (free + v0));
+                }
+            }
+            self.move_to_guess(model, state, h);
             self.locate_closed(model, work)?;
         } else {
             let Self { closed, looked, new, found, found_rooms, .. } = self;

@@ -57,14 +57,16 @@ fn a_plate_that_a_beam_lifts_by_micrometres_does_not_bounce() {
         [beam.t]\nmaterial = 'steel'\nspan = '1 m'\nwidth = '5 cm'\nthickness = '5 mm'\nelements = 20\n\
         damping_ratio = { mode = 1, ratio = 0.01 }\n[block.plate]\nmaterial = 'steel'\nwidth = '10 cm'\nheight = '1 cm'\n\
         depth = '5 cm'\nposition = ['50 cm', '1.5 cm']\n[contact.f]\nbetween = ['plate', 't']\nfriction = 0.3\n";
-    // By tens of micrometres in the last 0.1 s, also where it was thrown higher before, and by 0.16 mm.
+    // By tens of micrometres in the last 0.1 s, or by less than can be seen, also where it was thrown higher before, and by 0.16 mm.
     let trembles = "trembling where it stands, on a beam that moves";
+    let hops = "`plate` is at rest but for hops of less than a ten-thousandth of its size, on a beam that moves";
     for (restitution, end, how) in
         [("0.5", "0.5 s", trembles), ("0.9", "0.28 s", "bouncing"), ("0.9", "0.5 s", trembles)]
     {
         let text = text.replace("0.5 s", end);
         let ran = scene(&format!("plate-{restitution}-{end}"), &format!("{text}restitution = {restitution}\n"));
-        assert_eq!(ran.summary["headline"], format!("`plate` is still {how}"));
+        let headline = ran.summary["headline"].as_str().unwrap();
+        assert!(headline == format!("`plate` is still {how}") || (how == trembles && headline == hops), "{headline}");
     }
 }
 

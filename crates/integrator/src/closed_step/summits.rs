@@ -4,16 +4,15 @@ use super::{ClosedStep, SINKING};
 use crate::step_motion::StepMotion;
 use crate::{Contact, Mismatch, Model, State, Workspace};
 
-/// Most rounds of a step. Where steps resolve the motion of a surface, two to four are enough.
-const MOST_ROUNDS: usize = 8;
+/// Most rounds of a step; usually two to six are enough.
+const MOST_ROUNDS: usize = 20;
 
-/// What the frames of a round change of a gap, in parts of what those of the round before did, has to be below this: over a surface that is
-/// nearly flat a summit jumps about, and rounds lead nowhere.
+/// What the frames of a round change of a gap, in parts of what those of the round before did, has to be below this: where a summit
+/// jumps about, rounds lead nowhere.
 const SHRINKS: f64 = 0.5;
 
-/// Where frames in the middle of the first motion change a gap by more than so many times the gap tolerance, the surface moves too fast for a frame to
-/// hold over the step: all are those of the motion without impulses.
-const QUIET: f64 = 1e5;
+/// So many rounds may change more than the one before: from the first two the relaxation is learned, which the third is the first to show.
+const LEARNING: usize = 3;
 
 /// How the frames of summits are found in one attempt.
 #[derive(Clone, Copy, Debug)]
@@ -21,21 +20,34 @@ pub(super) struct Rounds {
     count: usize,
     /// What the last frames changed of a gap over the step, m.
     change: f64,
-    given_up: bool,
+    /// How far the next guess goes towards the motion that was found, as a part.
+    relaxation: f64,
 }
 
 impl Default for Rounds {
     fn default() -> Self {
-        Self { count: 0, change: f64::INFINITY, given_up: false }
+        Self { count: 0, change: f64::INFINITY, relaxation: 1.0 }
     }
 }
 
 impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
-    /// Takes frames and gaps of all closed contacts from the motion that was tried, where the frame of a summit that presses differs there so
-    /// much that its gap changes over the step by more than rounding; where such rounds lead nowhere, from the motion without impulses again,
-    /// for the last time. Whether it took any: the step is then to be solved again.
+    /// Whether the first frames of a step are those of a motion with the velocities of its start: where a summit is closed. Without impulses a base may
+    /// sink in so far beside it that it isn't one any more.
+    pub(super) fn follows_summits(&self, model: &Model<D>) -> bool {
+        let mut closed = self.closed.iter();
+        !self.summits_lost && self.rigid.contains(&false) && closed.any(|id| model.detector().is_summit(*id))
+    }
+
+    pub(super) fn move_to_guess(&mut self, model: &Model<D>, from: &State, h: f64) {
+        model.move_along(&from.q, &self.guessed, h, &mut self.q_ahead);
+        model.move_along(&from.q, &self.guessed, 0.5 * h, &mut self.q_mid);
+    }
+
+    /// Takes frames and gaps of all closed contacts from a motion nearer to the one that was found, where the frame of a summit that presses
+    /// differs there so much that its gap changes over the step by more than rounding; where such rounds lead nowhere, from the motion without
+    /// impulses, for the last time. Whether it took any: the step is then to be solved again.
     ///
-    /// q̃_m is the middle of the motion without impulses. Where a load presses, a summit is elsewhere there, always to the same side, and as
+    /// Were all those of the motion without impulses: where a load presses, a summit is elsewhere there, always to the same side, and as
     /// its frame turns with its place, each tremor of the surface lets the base sink in. That sets free energy, which keeps the tremor alive,
     /// and with it the sinking. With a frame in the middle of the motion itself, what the gap is off by has no sign, and what trembles dies down.
     pub(super) fn takes_frames_of_summits(
@@ -46,7 +58,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         rounds: &mut Rounds,
         work: &mut Workspace<D>,
     ) -> Result<bool, Mismatch> {
-        if rounds.given_up || !self.rigid.contains(&false) {
+        if !self.follows_summits(model) {
             return Ok(false);
         }
         self.summits.clear();
@@ -55,31 +67,53 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         let pressing = self.stage.contacts().iter().filter(goes_on).map(|contact| contact.id);
         self.summits.extend(pressing.filter(|id| model.detector().is_summit(*id)));
         let change = match self.summits.is_empty() {
-            true if rounds.count == 0 => return Ok(false),
             true => None,
             false => self.change_of_frames(model, from, h, work)?,
         };
-        match change {
-            Some(change) if change <= SINKING * self.gap_tolerance => Ok(false),
-            Some(change) if rounds.count == 0 && change > QUIET * self.gap_tolerance => Ok(false),
+        let goes_on = match change {
+            // The first frames are a guess; whatever is left of it in each step, adds up.
+            Some(0.0) => return Ok(false),
+            Some(change) if rounds.count > 0 && change <= SINKING * self.gap_tolerance => return Ok(false),
             // As good as rounding allows.
-            Some(change) if change <= self.gap_tolerance && change > SHRINKS * rounds.change => Ok(false),
-            Some(change) if change <= SHRINKS * rounds.change && rounds.count < MOST_ROUNDS => {
-                (rounds.count, rounds.change) = (rounds.count + 1, change);
-                std::mem::swap(&mut self.q_mid, &mut self.q_tried);
-                model.move_along(&from.q, &self.mean, h, &mut self.q_ahead);
-                self.locate_closed(model, work)?;
-                self.stage.keep_islands_anew();
-                Ok(true)
+            Some(change) if change <= self.gap_tolerance && change > SHRINKS * rounds.change => return Ok(false),
+            Some(change) if rounds.count < LEARNING || change <= SHRINKS * rounds.change => {
+                rounds.change = change;
+                rounds.count < MOST_ROUNDS
             }
-            _ if rounds.count == 0 => Ok(false),
-            _ => {
-                rounds.given_up = true;
-                self.looked.clear();
-                self.look_ahead(model, from, h, work)?;
-                self.stage.keep_islands_anew();
-                Ok(true)
+            _ => false,
+        };
+        if goes_on {
+            self.guess_anew(rounds);
+            self.move_to_guess(model, from, h);
+            self.locate_closed(model, work)?;
+        } else {
+            self.summits_lost = true;
+            self.looked.clear();
+            self.look_ahead(model, from, h, work)?;
+        }
+        self.stage.keep_islands_anew();
+        Ok(true)
+    }
+
+    /// The next guess, by relaxation as Irons and Tuck's (1969, doi 10.1002/nme.1620010306). Over a surface that is nearly flat a summit moves by
+    /// far more than what made it move: taken as it was found, each guess would be further off than the one before, to the other side.
+    fn guess_anew(&mut self, rounds: &mut Rounds) {
+        let Self { mean, guessed, residual, .. } = self;
+        if rounds.count > 0 {
+            let (mut along, mut square) = (0.0, 0.0);
+            for ((mean, guessed), before) in mean.iter().zip(&*guessed).zip(&*residual) {
+                let change = mean - guessed - before;
+                along += before * change;
+                square += change * change;
             }
+            if square > 0.0 {
+                rounds.relaxation *= -along / square;
+            }
+        }
+        rounds.count += 1;
+        for ((mean, guessed), residual) in mean.iter().zip(guessed).zip(residual) {
+            *residual = mean - *guessed;
+            *guessed += rounds.relaxation * *residual;
         }
     }
 

@@ -106,10 +106,16 @@ impl Seen {
         let going = moves.then(|| self.going(watched, layout, number, state)).flatten();
         let going = going.or(rides.then_some(Going::Rides));
         let going = going.or((moves && stands_on_both && rocked).then_some(Going::Vibrates));
+        let for_an_instant = self.still.is_some_and(|since| state.t - since < watched.still_time);
+        let carrier_moves = || {
+            let q = &state.q[layout.blocks[number].range.clone()];
+            let [vx, vy, _] = watched.carrier.velocity([q[0], q[1]], None, layout, state);
+            state.t < watched.driven_until || vx.hypot(vy) > watched.still_speed
+        };
         // Where what carries it is shaken, it may slide on.
         let stopped = what == Fate::Slid
             && rests.is_none()
-            && self.still.is_none()
+            && (self.still.is_none() || (for_an_instant && carrier_moves()))
             && state.t >= watched.driven_until
             && has_stopped;
         let turning = not_upright.filter(|_| what == Fate::Rocks || (moves && going.is_none())).filter(turns_on);
@@ -118,7 +124,6 @@ impl Seen {
         let tips = turning.filter(turns).filter(began_to_tip).map(|_| Way::of(tilt));
         let on_its_way = not_upright.filter(|_| what == Fate::Rocks || tips.is_some()).filter(began_to_tip);
         let stands = moves && part.is_some() && !rocked && (has_stopped || self.slides.most() < 0.1 * least);
-        let for_an_instant = self.still.is_some_and(|since| state.t - since < watched.still_time);
         let stands = stands || (what == Fate::Moves && has_stood && for_an_instant);
         let trembles = || (stands && turning.is_none()).then_some(Going::Trembles);
         let going = going.or_else(trembles);
@@ -154,7 +159,7 @@ impl Seen {
             max_phi_over_alpha: part,
             last_peak: peak.filter(|_| what == Fate::Rocks).map(|peak| peak.phi),
             against: watched.against(layout, number, &state.q),
-            still_from: self.still.filter(|_| rests.is_none()),
+            still_from: self.still.filter(|_| rests.is_none() && !stopped),
             stands_from: since,
             turned: (what == Fate::Overturned && turned.abs() >= TUMBLED).then_some(turned.abs()),
             is_carried: rests.is_some() && {
@@ -165,12 +170,9 @@ impl Seen {
             tumbled: tumbled.filter(|turn| turn.abs() >= TUMBLED),
             on_its_way: on_its_way.map(|_| tilt),
             on_what_moves: watched.carrier.word().filter(|_| {
-                let q = &state.q[layout.blocks[number].range.clone()];
-                let [vx, vy, _] = watched.carrier.velocity([q[0], q[1]], None, layout, state);
-                let moves = state.t < watched.driven_until || vx.hypot(vy) > watched.still_speed;
                 // What rides on a driven block is told to stand on it.
                 let is_told = going == Some(Going::Rides) && watched.carrier.is_by_block();
-                (stopped || going.is_some_and(Going::stays)) && moves && !is_told
+                (stopped || going.is_some_and(Going::stays)) && !is_told && carrier_moves()
             }),
             going,
             stopped_rocking: self

@@ -127,7 +127,8 @@ fn by_fine_points(of: &Simulation, end: f64) -> (Vec<f64>, f64) {
 fn a_base_rests_on_a_support_or_an_end_as_with_points_every_half_of_a_millimetre() {
     let weight = 600.0 * 0.2 * 0.05 * 0.03 * G;
     for (more, point) in [(OVER_A_SUPPORT, "c hump-1"), (OVER_AN_END, "c end-right")] {
-        let text = scene("4 s", more);
+        // At 100 µs what is left of the fall trembles from step to step, and dies down within 6 s only.
+        let text = scene("4 s", more).replace("'100 us'", "'50 us'");
         let start = simulation(&text, &[]);
         let (fine, pressed) = by_fine_points(&start, 4.0);
         let mut simulation = simulation(&text, &[]);
@@ -154,19 +155,25 @@ const ON_A_HUMP: &str = "span = '1 m'\nwidth = '5 cm'\nthickness = '2 mm'\neleme
      [block.base]\nmaterial = 'stone'\nwidth = '15 cm'\nheight = '10 cm'\ndepth = '5 cm'\non = 'plank'\nat = '48 cm'\n\
      [contact.c]\nbetween = ['base', 'plank']\nfriction = 0.5\npoints = 'all'\n";
 
-/// With frames of the motion without impulses it sank in at the hump by 40 µm in 1 s, and turned by 3e-4 rad.
+/// With frames of the motion without impulses it sank in at the hump by 40 µm in 1 s, and turned by 3e-4 rad; within 1 cm of the support by
+/// three times as much, and where the corner is beside the crest (42 cm) the touch that each step looked for took 40 attempts. Flush over the support
+/// (50 cm) it sank by 0.4 µm.
 #[test]
 fn a_block_on_a_hump_stays_as_it_was_put() {
-    let text = scene("1 s", ON_A_HUMP).replace("self_weight = true\n", "").replace("'600 kg/m^3'", "'2700 kg/m^3'");
-    let text = text.replace("'11 GPa'", "'69 GPa'");
-    for (scheme, at, step, most) in [
-        ("moreau-jean-located", "48 cm", "200 us", 2e-7),
-        ("moreau-jean-closed", "48 cm", "100 us", 1e-7),
-        ("moreau-jean-closed", "46 cm", "200 us", 1e-8),
-        ("moreau-jean-projected", "48 cm", "200 us", 2e-7),
+    let text = scene("1 s", ON_A_HUMP).replace("'600 kg/m^3'", "'2700 kg/m^3'").replace("'11 GPa'", "'69 GPa'");
+    for (scheme, at, step, weighs, most) in [
+        ("moreau-jean-located", "48 cm", "200 us", false, 5e-8),
+        ("moreau-jean-closed", "48 cm", "100 us", false, 5e-8),
+        ("moreau-jean-closed", "46 cm", "200 us", false, 1e-8),
+        ("moreau-jean-projected", "48 cm", "200 us", false, 5e-8),
+        ("moreau-jean-located", "49 cm", "200 us", false, 1e-10),
+        ("moreau-jean-located", "50 cm", "200 us", false, 1e-12),
+        ("moreau-jean-located", "42 cm", "200 us", true, 1e-8),
     ] {
         let quoted = |value: &str| format!("'{value}'");
-        let sets = [("time.scheme", quoted(scheme)), ("time.step", quoted(step)), ("block.base.at", quoted(at))];
+        let weight = ("beam.plank.self_weight", weighs.to_string());
+        let sets =
+            [("time.scheme", quoted(scheme)), ("time.step", quoted(step)), ("block.base.at", quoted(at)), weight];
         let mut simulation = simulation(&text, &sets.each_ref().map(|(key, value)| (*key, value.as_str())));
         let block = simulation.layout.blocks[0].range.clone();
         let start = simulation.state.q[block.clone()].to_vec();
