@@ -49,8 +49,9 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     summits: Vec<ContactId>,
     /// The mean velocity of the motion that was tried, and the coordinates in its middle; memory.
     mean: Vec<f64>,
-    /// The mean velocities of the motion in whose middle frames are, and by what those of the motion found with them differed.
+    /// The mean velocity of the guessed motion, in whose middle frames are taken.
     guessed: Vec<f64>,
+    /// The mean velocity that was found with these frames, minus the guess; memory.
     residual: Vec<f64>,
     q_tried: Vec<f64>,
     middle: Candidates<D>,
@@ -69,7 +70,7 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     pub(crate) closed: Vec<ContactId>,
     /// Those of them that have been looked at in this step, and those that are new.
     looked: Vec<ContactId>,
-    /// Whether the frames of summits in motion were sought in vain in this step.
+    /// Whether this step takes the frames of summits from the motion without impulses: where none presses, or iterating for them failed.
     summits_lost: bool,
     pub(crate) new: Vec<ContactId>,
     /// What was found of the new ones.
@@ -338,19 +339,22 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
     fn resize(&mut self, model: &Model<D>) {
         self.v_free.resize(model.size().v, 0.0);
         self.q_mid.resize(model.size().q, 0.0);
-        for velocities in [&mut self.mean, &mut self.guessed, &mut self.residual] {
-            velocities.resize(model.size().v, 0.0);
-        }
+        self.guessed.resize(model.size().v, 0.0);
         self.q_tried.resize(model.size().q, 0.0);
         self.q_ahead.resize(model.size().q, 0.0);
         if self.rigid.len() != model.parts().len() {
             self.find_what_is_rigid(model);
         }
+        // Only elastic surfaces have summits that move.
+        if self.rigid.contains(&false) {
+            self.mean.resize(model.size().v, 0.0);
+            self.residual.resize(model.size().v, 0.0);
+        }
     }
 
-    /// Finds frames and gaps at q̃_m and q̃ of the closed contacts that haven't been looked at in this
-    /// step: the free motion is the same for all its attempts. Once these are of the motion that was found, so are those of
-    /// contacts that close later.
+    /// Finds frames and gaps at q̃_m and q̃ of the closed contacts that haven't been looked at in this step. q̃ is the end of the free motion;
+    /// with a closed summit that of a motion with the velocities of the start, and later of the guess that was made. Contacts that close later
+    /// in the step take the same.
     fn look_ahead(&mut self, model: &Model<D>, state: &State, h: f64, work: &mut Workspace<D>) -> Result<(), Mismatch> {
         if self.looked.is_empty() {
             match self.follows_summits(model) {

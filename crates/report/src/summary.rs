@@ -252,9 +252,12 @@ impl Passages {
 
 /// Verdicts as the headline tells them: the last peak of what rocks on a beam counts from the line between its feet there, as φ/α and the table of half
 /// cycles of the page, not from the beam's undeformed axis.
-fn as_told(verdict: &[BodyVerdict], record: &Record) -> Vec<BodyVerdict> {
+fn as_told(scene: &Scene, verdict: &[BodyVerdict], record: &Record) -> Vec<BodyVerdict> {
     let mut told = verdict.to_vec();
-    for (of, (line, about)) in told.iter_mut().zip(record.feet_lines.iter().zip(&record.rocking)) {
+    let lines = record.feet_lines.iter().zip(&record.rocking);
+    // What moves as prescribed has no verdict.
+    let free = scene.blocks.iter().zip(lines).filter(|(block, _)| !block.motion.is_given());
+    for (of, (_, (line, about))) in told.iter_mut().zip(free) {
         let since = of.stands_from.unwrap_or(0.0);
         if of.last_peak.is_some()
             && of.on_its_way.is_none()
@@ -473,7 +476,7 @@ impl Summary {
             |of: fn(&BodyVerdict) -> Option<f64>, pick: fn(f64, f64) -> f64| verdict.iter().filter_map(of).reduce(pick);
         Self {
             headline: match wanted("headline") {
-                true => headline(scene, state, &as_told(&verdict, record), (&beams, &deflections)),
+                true => headline(scene, state, &as_told(scene, &verdict, record), (&beams, &deflections)),
                 false => String::new(),
             },
             max_phi_over_alpha: first(|of| of.max_phi_over_alpha, f64::max),

@@ -7,12 +7,14 @@ use crate::{Contact, Mismatch, Model, State, Workspace};
 /// Most rounds of a step; usually two to six are enough.
 const MOST_ROUNDS: usize = 20;
 
-/// What the frames of a round change of a gap, in parts of what those of the round before did, has to be below this: where a summit
-/// jumps about, rounds lead nowhere.
+/// The frames of each round must change a gap by less than this part of what those of the round before did; otherwise rounds lead nowhere.
 const SHRINKS: f64 = 0.5;
 
-/// So many rounds may change more than the one before: from the first two the relaxation is learned, which the third is the first to show.
+/// So many rounds are exempt from that: the relaxation is learned from two, and takes effect in the third.
 const LEARNING: usize = 3;
+
+/// A relaxation beyond this comes from two rounds that agree to rounding.
+const MOST_RELAXATION: f64 = 8.0;
 
 /// How the frames of summits are found in one attempt.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +64,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             return Ok(false);
         }
         self.summits.clear();
-        // Of a blow the step knows no better than that it comes.
+        // One that is struck in this step is left out.
         let goes_on = |contact: &&Contact<D>| contact.p[0] > 0.0 && (contact.persisting || contact.u_before[0] >= 0.0);
         let pressing = self.stage.contacts().iter().filter(goes_on).map(|contact| contact.id);
         self.summits.extend(pressing.filter(|id| model.detector().is_summit(*id)));
@@ -71,7 +73,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             false => self.change_of_frames(model, from, h, work)?,
         };
         let goes_on = match change {
-            // The first frames are a guess; whatever is left of it in each step, adds up.
+            // The first frames are a guess: what a step left of it would add up.
             Some(0.0) => return Ok(false),
             Some(change) if rounds.count > 0 && change <= SINKING * self.gap_tolerance => return Ok(false),
             // As good as rounding allows.
@@ -82,8 +84,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             }
             _ => false,
         };
-        if goes_on {
-            self.guess_anew(rounds);
+        if goes_on && self.guess_anew(rounds) {
             self.move_to_guess(model, from, h);
             self.locate_closed(model, work)?;
         } else {
@@ -95,9 +96,10 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         Ok(true)
     }
 
-    /// The next guess, by relaxation as Irons and Tuck's (1969, doi 10.1002/nme.1620010306). Over a surface that is nearly flat a summit moves by
+    /// The next guess, by relaxation as Irons and Tuck's (1969, doi 10.1002/nme.1620010306), with the sum of squares of all velocities; whether there
+    /// is one. Over a surface that is nearly flat a summit moves by
     /// far more than what made it move: taken as it was found, each guess would be further off than the one before, to the other side.
-    fn guess_anew(&mut self, rounds: &mut Rounds) {
+    fn guess_anew(&mut self, rounds: &mut Rounds) -> bool {
         let Self { mean, guessed, residual, .. } = self;
         if rounds.count > 0 {
             let (mut along, mut square) = (0.0, 0.0);
@@ -110,11 +112,16 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
                 rounds.relaxation *= -along / square;
             }
         }
+        // Written so that NaN fails too.
+        if !(rounds.relaxation.abs() <= MOST_RELAXATION) {
+            return false;
+        }
         rounds.count += 1;
         for ((mean, guessed), residual) in mean.iter().zip(guessed).zip(residual) {
             *residual = mean - *guessed;
             *guessed += rounds.relaxation * *residual;
         }
+        true
     }
 
     /// The most by which frames in the middle of the motion that was tried change the gap of a summit over the step, m; `None` where one is no
