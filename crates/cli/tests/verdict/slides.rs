@@ -230,3 +230,14 @@ fn without_gravity_there_is_no_slope_to_slide_down() {
     let headline = ran.summary["headline"].as_str().unwrap();
     assert!(headline.starts_with("`b` slid") && headline.contains("to the right"), "{headline}");
 }
+
+/// The way along the surface is longer than its projection on the slope of the start.
+#[test]
+fn what_slides_from_one_piece_of_a_profile_to_the_next_does_not_hop() {
+    let text = "[time]\nend = '1.5 s'\nstep = '200 us'\nscheme = 'moreau-jean-located'\n[ground.profile]\n\
+        points = [['-1 m', '0.5 m'], ['0 m', '0 m'], ['3 m', '0 m']]\n[material.m]\ndensity = '2000 kg/m^3'\n[block.b]\nmaterial = 'm'\n\
+        width = '10 cm'\nheight = '4 cm'\ndepth = '10 cm'\non = 'ground'\nat = '-0.5 m'\n[contact.g]\nbetween = ['b', 'ground']\nfriction = 0.2\n";
+    let ran = written(&folder("verdict-profile"), text);
+    let headline = ran.summary["headline"].as_str().unwrap();
+    assert!(headline.starts_with("`b` slid by 1.05") && !headline.contains("hops"), "{headline}");
+}

@@ -323,7 +323,9 @@ fn beside_slid(scene: &Scene, of: &BodyVerdict) -> String {
     let told = of.farthest.map_or(slid.abs(), |farthest| farthest.abs() + (slid - farthest).abs());
     let in_all = of.slid_in_all.filter(|in_all| *in_all > MORE * told && is_told(scene, of, in_all - told));
     let in_all = in_all.map(|in_all| format!("{} in all", with_unit(in_all, "m")));
-    let place = of.elsewhere.map(|at| {
+    // Along a profile of several slopes the way along the surface isn't the way that its start's slope measures.
+    let is_straight = scene.ground.as_ref().is_none_or(|ground| ground.profile.is_none());
+    let place = of.elsewhere.filter(|_| is_straight).map(|at| {
         let at_start = !is_told(scene, of, at);
         let where_to = || format!("{} {} its start", with_unit(at.abs(), "m"), direction(scene, at).side);
         format!("with hops and flights {}", if at_start { "back at its start".to_owned() } else { where_to() })
