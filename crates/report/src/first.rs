@@ -1,5 +1,4 @@
-//! When a largest value is reached first: what comes to it several times, or is constant, does so to rounding only, and the time of the very largest
-//! would be any of these.
+//! When a maximum is first reached: values within rounding of it count as equal, so that a constant has the time of its start.
 
 /// Values that differ by less than this part of themselves are the same.
 const ROUNDING: f64 = 1e-9;

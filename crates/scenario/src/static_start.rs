@@ -400,10 +400,10 @@ impl StaticModel {
         let body = |part: usize| BodyId(first.0 + part as u32);
         for (number, contact) in scene.contacts.iter().enumerate() {
             let block = part(contact.block);
+            let friction = |held: f64| if is_held(scene, contact) { held } else { contact.law.friction };
             if let Some(other) = contact.other_block() {
                 let (Some(block), Some(other_part)) = (block, part(other)) else { continue };
-                let law = parts
-                    .law(PairLaw::new(if is_held(scene, contact) { HELD_FRICTION } else { contact.law.friction }, 0.0));
+                let law = parts.law(PairLaw::new(friction(HELD_FRICTION), 0.0));
                 let (pair, bodies) = (contacts.len() as u32, [block, other_part].map(body));
                 pairs.shapes.push(ShapePair { pair, law, bodies });
                 contacts.push(EquilibriumPair { contact: number, corners: Vec::new(), is_of_sides: false });
@@ -413,16 +413,14 @@ impl StaticModel {
             let (Some(block), Some((_, place))) = (block, surface) else { continue };
             let (kinematics, surface) = (contact.kinematics, place.nth_body(contact.face.body()));
             if contact.sides && on_beams == Points::All {
-                let law =
-                    parts.law(PairLaw::new(if is_held(scene, contact) { 0.0 } else { contact.law.friction }, 0.0));
+                let law = parts.law(PairLaw::new(friction(0.0), 0.0));
                 let (pair, surface) = (contacts.len() as u32, place.nth_body(contact.face.fibre()));
                 pairs.sides.push(SidePair { pair, law, body: body(block), surface, kinematics });
                 contacts.push(EquilibriumPair { contact: number, corners: Vec::new(), is_of_sides: true });
             }
             let (corners, is_round) = (&start.blocks[contact.block].corners, start.blocks[contact.block].is_round);
             if is_round {
-                let law = parts
-                    .law(PairLaw::new(if is_held(scene, contact) { HELD_FRICTION } else { contact.law.friction }, 0.0));
+                let law = parts.law(PairLaw::new(friction(HELD_FRICTION), 0.0));
                 let pair = contacts.len() as u32;
                 pairs.surfaces.push(SurfacePair { pair, law, body: body(block), surface, kinematics });
                 let corners = (0..corners.len()).collect();

@@ -68,12 +68,9 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         let goes_on = |contact: &&Contact<D>| contact.p[0] > 0.0 && (contact.persisting || contact.u_before[0] >= 0.0);
         let pressing = self.stage.contacts().iter().filter(goes_on).map(|contact| contact.id);
         self.summits.extend(pressing.filter(|id| model.detector().is_summit(*id)));
-        let change = match self.summits.is_empty() {
-            true => None,
-            false => self.change_of_frames(model, from, h, work)?,
-        };
+        let change = if self.summits.is_empty() { None } else { self.change_of_frames(model, from, h, work)? };
         let goes_on = match change {
-            // The first frames are a guess: what a step left of it would add up.
+            // The first frames are a guess, and what each step left of its error would accumulate.
             Some(0.0) => return Ok(false),
             Some(change) if rounds.count > 0 && change <= SINKING * self.gap_tolerance => return Ok(false),
             // As good as rounding allows.
@@ -96,9 +93,9 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         Ok(true)
     }
 
-    /// The next guess, by relaxation as Irons and Tuck's (1969, doi 10.1002/nme.1620010306), with the sum of squares of all velocities; whether there
-    /// is one. Over a surface that is nearly flat a summit moves by
-    /// far more than what made it move: taken as it was found, each guess would be further off than the one before, to the other side.
+    /// Makes the next guess, relaxed as by Irons and Tuck (1969, doi 10.1002/nme.1620010306), with the sum of squares over all
+    /// velocities; whether there is one. Over a surface that is nearly flat a summit moves by far more than what made it move:
+    /// taken as it was found, each guess would be further off than the one before, to the other side.
     fn guess_anew(&mut self, rounds: &mut Rounds) -> bool {
         let Self { mean, guessed, residual, .. } = self;
         if rounds.count > 0 {

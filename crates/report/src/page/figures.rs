@@ -359,10 +359,12 @@ impl Plots<'_> {
                 let has_means = lines.iter().any(Series::is_faint);
                 let (lines, about_pale, told) = cut_lines(lines, cut, range, &unit);
                 let without = if impacts.is_empty() { "" } else { " without impacts" };
-                let meant = match () {
-                    () if contact.has_duration => self.panels.told_of_springs().map(Note::of_plot),
-                    () if has_means => Some(Note::of_pale(format!("pale: {}", self.panels.told_of_rigid("")))),
-                    () => Some(Note::of_plot(self.panels.told_of_rigid(without))),
+                let meant = if contact.has_duration {
+                    self.panels.told_of_springs().map(Note::of_plot)
+                } else if has_means {
+                    Some(Note::of_pale(format!("pale: {}", self.panels.told_of_rigid(""))))
+                } else {
+                    Some(Note::of_plot(self.panels.told_of_rigid(without)))
                 };
                 let meant = meant.filter(|note| about_pale || note.about != About::Pale);
                 let strong = (has_means && !contact.has_duration)

@@ -107,8 +107,8 @@ impl Seen {
         let going = going.or(rides.then_some(Going::Rides));
         let going = going.or((moves && stands_on_both && rocked).then_some(Going::Vibrates));
         let for_an_instant = self.still.is_some_and(|since| state.t - since < watched.still_time);
+        let q = &state.q[layout.blocks[number].range.clone()];
         let carrier_moves = || {
-            let q = &state.q[layout.blocks[number].range.clone()];
             let [vx, vy, _] = watched.carrier.velocity([q[0], q[1]], None, layout, state);
             state.t < watched.driven_until || vx.hypot(vy) > watched.still_speed
         };
@@ -163,7 +163,6 @@ impl Seen {
             stands_from: since,
             turned: (what == Fate::Overturned && turned.abs() >= TUMBLED).then_some(turned.abs()),
             is_carried: rests.is_some() && {
-                let q = &state.q[layout.blocks[number].range.clone()];
                 let [vx, vy, spin] = watched.carrier.base_velocity([q[0], q[1]], layout, state);
                 state.t < watched.driven_until || vx.hypot(vy) + watched.reach * spin.abs() > watched.still_speed
             },
@@ -184,10 +183,7 @@ impl Seen {
             stood_on: beam(is_here && self.never_moved(watched, least)),
             left_beam: beam(what == Fate::Left),
             fell_off: (what == Fate::Overturned)
-                .then(|| {
-                    let q = &state.q[layout.blocks[number].range.clone()];
-                    watched.carrier.below_an_end([q[0], q[1]], watched.reach, layout, &state.q)
-                })
+                .then(|| watched.carrier.below_an_end([q[0], q[1]], watched.reach, layout, &state.q))
                 .flatten()
                 .map(|(way, beam)| (way, layout.beams[beam].name.clone())),
             touches_beam: what == Fate::Left && touches_beam,
