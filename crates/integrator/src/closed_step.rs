@@ -47,12 +47,11 @@ pub(crate) struct ClosedStep<const D: usize, M = ThetaStep> {
     q_mid: Vec<f64>,
     /// Summits that press; memory.
     summits: Vec<ContactId>,
-    /// The mean velocity of the motion that was tried, and the coordinates in its middle; memory.
-    mean: Vec<f64>,
     /// The mean velocity of the guessed motion, in whose middle frames are taken.
     guessed: Vec<f64>,
-    /// The mean velocity that was found with these frames, minus the guess; memory.
-    residual: Vec<f64>,
+    /// How the frames of summits are found.
+    rounds: summits::Rounds<D>,
+    /// Coordinates in the middle of the motion that was found; memory.
     q_tried: Vec<f64>,
     middle: Candidates<D>,
     /// Of each of these, at q̃_m and at q̃, how far it is to the end of its surface, m.
@@ -129,9 +128,8 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             q_ahead: Vec::new(),
             q_mid: Vec::new(),
             summits: Vec::new(),
-            mean: Vec::new(),
             guessed: Vec::new(),
-            residual: Vec::new(),
+            rounds: summits::Rounds::default(),
             q_tried: Vec::new(),
             middle: Vec::new(),
             rooms: [const { Vec::new() }; 2],
@@ -189,6 +187,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         for ids in [&mut self.closed, &mut self.looked, &mut self.new, &mut self.summits] {
             ids.reserve(contacts);
         }
+        self.rounds.reserve(contacts);
         for of_bodies in [&mut self.depths, &mut self.landings] {
             of_bodies.reserve(model.body_count().saturating_sub(of_bodies.len()));
         }
@@ -256,10 +255,10 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         if self.looked.len() < self.closed.len() {
             self.look_ahead(model, from, span.h, work)?;
         }
-        let mut rounds = summits::Rounds::default();
+        self.rounds.begin();
         let outcome = loop {
             let outcome = self.solve_to_its_end(model, from, span, work)?;
-            if !self.takes_frames_of_summits(model, from, span.h, &mut rounds, work)? {
+            if !self.takes_frames_of_summits(model, from, span.h, work)? {
                 break outcome;
             }
         };
@@ -347,8 +346,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         }
         // Only elastic surfaces have summits that move.
         if self.rigid.contains(&false) {
-            self.mean.resize(model.size().v, 0.0);
-            self.residual.resize(model.size().v, 0.0);
+            self.rounds.resize(model.size().v);
         }
     }
 
@@ -356,8 +354,10 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
     /// with a closed summit that of a motion with the velocities of the start, and later of the guess that was made. Contacts that close later
     /// in the step take the same.
     fn look_ahead(&mut self, model: &Model<D>, state: &State, h: f64, work: &mut Workspace<D>) -> Result<(), Mismatch> {
-        if self.looked.is_empty() {
-            match self.follows_summits(model) {
+        let follows = self.follows_summits(model);
+        // With the first summit all are looked at anew.
+        if self.looked.is_empty() || (follows && !self.looked.iter().any(|id| model.detector().is_summit(*id))) {
+            match follows {
                 true => self.guessed.copy_from_slice(&state.v),
                 // ½(v⁰ + v_free), the mean velocity of the free motion.
                 false => {
@@ -389,8 +389,8 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
     }
 
     /// Whether contact `i` of an attempt of `h` (s) may be past the end of its surface after it. It
-    /// is if it was at q̃, unless impulses have moved it since: by half the difference of the
-    /// slides that are summed here, so that twice their sum leaves room for turns.
+    /// is if it was at q̃, unless impulses have moved it since, from the free motion or from the guess: by
+    /// no more than the slides that are summed here, so that twice their sum leaves room for turns.
     pub(crate) fn may_leave(&self, i: usize, h: f64) -> bool {
         let Ok(at) = self.ahead.binary_search_by_key(&self.stage.contacts()[i].id, |ahead| ahead.id) else {
             return true;
@@ -401,7 +401,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         let slide = |v: &[f64]| {
             self.stage.velocity(i, v).map_or(f64::INFINITY, |u| u.iter().skip(1).map(|u_t| u_t.abs()).sum::<f64>())
         };
-        self.rooms[1][at] <= 2.0 * h * (slide(self.step.v_end()) + slide(&self.v_free))
+        self.rooms[1][at] <= 2.0 * h * (slide(self.step.v_end()) + slide(&self.v_free) + slide(&self.guessed))
     }
 
     /// Finds which of the step's contacts are closed in the next.

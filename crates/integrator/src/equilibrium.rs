@@ -210,7 +210,15 @@ pub fn settle<const D: usize>(
         if change <= ROUNDING || (last && change <= SETTLED) {
             let named = |contact: &Contact<D>| Some((search.summits.identity(contact.id)?, contact.p / tau));
             let mut forces: Vec<_> = pressing().filter_map(named).collect();
-            forces.sort_unstable_by_key(|(id, _)| *id);
+            forces.sort_by_key(|(id, _)| *id);
+            // Summits on both sides of one that is there now.
+            forces.dedup_by(|(id, force), (first, sum)| {
+                let same = id == first;
+                if same {
+                    *sum += *force;
+                }
+                same
+            });
             search.go_on(model, tau);
             let penetration = work.penetration(model, &search.q)?;
             return Ok(Equilibrium { q: search.q, forces, rounds: round, change, tau, penetration });

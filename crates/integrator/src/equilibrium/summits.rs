@@ -4,8 +4,9 @@ use super::between;
 use crate::{Model, Vector};
 use teeter_detect::{BodyId, Candidate, ContactId, Frame, Geometry};
 
-/// A summit within this part of the base's length of an earlier one is that one.
-const SAME: f64 = 1e-3;
+/// A summit within this part of the base's length of an earlier one is that one. Of two that are nearer to each other than rounds tell them apart,
+/// either could bear all, and the solver would look in vain for how much each does.
+const SAME: f64 = 1e-6;
 
 /// A summit that was found in some round.
 #[derive(Clone, Copy, Debug)]
@@ -67,12 +68,13 @@ impl<const D: usize> Summits<D> {
         self.known.iter_mut().for_each(|summit| summit.now = None);
         for candidate in candidates.iter().filter(|candidate| is_summit(candidate)) {
             let apart = |other: &Candidate<D>| (other.sides[0].point - candidate.sides[0].point).norm();
-            let of_pair = |other: &&Candidate<D>| other.id.pair() == candidate.id.pair();
-            let length = candidates.iter().filter(of_pair).map(apart).fold(0.0, f64::max);
+            // Corners are of another pair.
+            let of_base = |other: &&Candidate<D>| other.sides[0].body == candidate.sides[0].body;
+            let length = candidates.iter().filter(of_base).map(apart).fold(0.0, f64::max);
             let is_same = |summit: &&mut Summit<D>| {
                 let known = &summit.candidate;
-                let of_base = of_pair(&known) && known.sides[0].body == candidate.sides[0].body;
-                of_base && summit.now.is_none() && apart(known) <= SAME * length
+                let of_pair = known.id.pair() == candidate.id.pair() && of_base(&known);
+                of_pair && summit.now.is_none() && apart(known) <= SAME * length
             };
             let number = self.known.len() as u32;
             if let Some(summit) = self.known.iter_mut().find(is_same) {
@@ -94,11 +96,13 @@ impl<const D: usize> Summits<D> {
         candidates.sort_unstable_by_key(|candidate| candidate.id);
     }
 
-    /// The identity of a contact among the detector's candidates; `None` of a summit that isn't one of them now.
+    /// The identity of a contact among the detector's candidates: of a summit that isn't one of them now, that of the nearest one of its base. Those
+    /// that bear come to lie on both sides of it, as near as rounds have brought them. `None` where the base has none.
     pub(super) fn identity(&self, id: ContactId) -> Option<ContactId> {
-        match self.known.iter().find(|summit| summit.candidate.id == id) {
-            Some(summit) => summit.now,
-            None => Some(id),
-        }
+        let Some(bears) = self.known.iter().find(|summit| summit.candidate.id == id) else { return Some(id) };
+        let sides = |summit: &Summit<D>| (summit.candidate.id.pair(), summit.candidate.sides[0].body);
+        let apart = |summit: &&Summit<D>| (summit.candidate.sides[0].point - bears.candidate.sides[0].point).norm();
+        let there = self.known.iter().filter(|summit| summit.now.is_some() && sides(summit) == sides(bears));
+        there.min_by(|a, b| apart(a).total_cmp(&apart(b)))?.now
     }
 }

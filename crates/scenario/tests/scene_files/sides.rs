@@ -185,6 +185,34 @@ fn a_block_on_a_hump_stays_as_it_was_put() {
     }
 }
 
+/// An undamped strip over three supports under a small heavy block, so near to the one in the middle that the crest under the base moves by 30 times
+/// as far as what moves it, and bends as it passes the support. Where its place in the middle of the motion wasn't found, blocks sank in by
+/// 13 µm in 1 s; of the forces of the start, that of the crest was told as nearly nothing.
+#[test]
+fn a_small_block_beside_a_support_stays_as_it_was_put() {
+    let text = "[time]\nend = '0.5 s'\nstep = '200 us'\nscheme = 'moreau-jean-closed'\n\
+         [material.a]\ndensity = '2700 kg/m^3'\nyoungs_modulus = '69 GPa'\n[material.s]\ndensity = '7850 kg/m^3'\n\
+         [beam.strip]\nmaterial = 'a'\nspan = '60 cm'\nwidth = '3 cm'\nthickness = '2 mm'\nelements = 24\nstart = 'static'\n\
+         [beam.strip.support.middle]\nat = '30 cm'\ndeflection = 'fixed'\n\
+         [block.b]\nmaterial = 's'\nwidth = '6 cm'\nheight = '4 cm'\ndepth = '3 cm'\non = 'strip'\nat = '30.05 cm'\n\
+         [contact.c]\nbetween = ['b', 'strip']\nfriction = 0.5\n";
+    let weight = 7850.0 * 0.06 * 0.04 * 0.03 * G;
+    for (at, step) in [("30.05 cm", "200 us"), ("30.1 cm", "100 us"), ("30.3 cm", "500 us"), ("30.6 cm", "200 us")] {
+        let quoted = |value: &str| format!("'{value}'");
+        let (at_there, step_there) = (quoted(at), quoted(step));
+        let mut simulation = simulation(text, &[("block.b.at", &at_there), ("time.step", &step_there)]);
+        let start = simulation.static_start.clone().unwrap();
+        let pressed: f64 = start.forces.iter().map(|force| force.force[0]).sum();
+        assert!((pressed / weight - 1.0).abs() < 1e-4, "{at}: {pressed} of {weight} N");
+        let block = simulation.layout.blocks[0].range.clone();
+        let put = simulation.state.q[block.clone()].to_vec();
+        assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
+        let sunk = put[1] - simulation.state.q[block][1];
+        let deepest = simulation.state.tally.max_penetration;
+        assert!(sunk.abs() < 5e-9 && deepest < 1e-9, "{at} {step}: {sunk:e} m, {deepest:e} m");
+    }
+}
+
 /// A stiff table of 1 m, and a block that overhangs its right end.
 fn overhanging(by: &str, more: &str) -> String {
     scene(
