@@ -180,6 +180,26 @@ impl Fates {
     }
 }
 
+impl Fates {
+    /// Takes in how far round blocks rolled in a step, after what pressed on them.
+    pub(super) fn roll(&mut self, watch: &Watch, layout: &Layout, state: &State) {
+        for (number, (seen, watched)) in self.blocks.iter_mut().zip(&watch.blocks).enumerate() {
+            let touches = || seen.touched.last == Some(state.t);
+            if watched.is_round && touches() && rolls(watched, watched.velocity(layout, number, state)) {
+                seen.rolled += seen.turn;
+            }
+        }
+    }
+}
+
+/// Whether a round block with this velocity and spin relative to what it touches rolls: the point that touches moves at less than half the centre's
+/// speed. What turns backwards, or on the spot, slides. On walls either sense may be right.
+fn rolls(watched: &Watched, [vx, vy, spin]: [f64; 3]) -> bool {
+    let speed = vx.hypot(vy);
+    let along = if vx.abs() > vy.abs() { vx.signum() } else { -spin.signum() };
+    (speed * along + watched.reach * spin).abs() <= 0.5 * speed
+}
+
 impl Touched {
     /// Whether it ever touched something.
     pub(super) fn any(&self) -> bool {
@@ -236,12 +256,7 @@ impl Seen {
         if !watched.is_round {
             return None;
         }
-        // The point that touches moves at less than half the centre's speed: what turns backwards, or on the spot, slides. On walls
-        // either sense may be right.
-        let speed = vx.hypot(vy);
-        let along = if vx.abs() > vy.abs() { vx.signum() } else { -spin.signum() };
-        let foot = speed * along + watched.reach * spin;
-        Some(if foot.abs() <= 0.5 * speed { Going::Rolls } else { Going::Slides })
+        Some(if rolls(watched, [vx, vy, spin]) { Going::Rolls } else { Going::Slides })
     }
 
     /// Whether it is in the air after a landing, or was so a short time ago, higher than what rocks hops. After a single hop it rocks as soon as it
@@ -270,7 +285,8 @@ impl Seen {
     /// speed, lies as flat, and doesn't go along what carries it. What tips up rises no more at first, but about a corner.
     fn hops(&self, watched: &Watched, layout: &Layout, number: usize, state: &State) -> bool {
         let [vx, vy, _] = watched.velocity(layout, number, state);
-        let (sin, cos) = watched.carrier.slope(&state.q).sin_cos();
+        let own = &state.q[layout.blocks[number].range.clone()];
+        let (sin, cos) = watched.carrier.slope(own, &state.q).sin_cos();
         let goes = (cos * vx + sin * vy).abs();
         let rises = watched.speed(layout, number, state).powi(2) / (2.0 * watched.gravity);
         let has_landed = self.touched.landed.is_some_and(|landed| state.t - landed <= SETTLED * watched.still_time);

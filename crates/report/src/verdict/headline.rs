@@ -7,7 +7,7 @@ use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
 use teeter_integrator::State;
 use teeter_scenario::readable::{like, with_unit};
-use teeter_scenario::scene::Scene;
+use teeter_scenario::scene::{BlockScene, Scene};
 
 /// Blocks up to this many are told one by one.
 const FEW: usize = 2;
@@ -124,6 +124,10 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     // What tumbles slides meanwhile, and after that.
     let then = if of.what == Fate::Slid && of.rests_from.is_some() { "" } else { "then " };
     let tumbled = of.tumbled.map(|turn| format!("tumbled by {}, {then}", turns(turn.abs())));
+    let rolled = of
+        .rolled
+        .filter(|_| of.going != Some(Going::Rolls))
+        .map(|turn| format!("rolled {}, {then}", rolled(scene, of, turn)));
     let moving = if of.is_carried { moving_base(scene, &[of]) } else { "" };
     // Where nothing is said, it rests on its base.
     let side = side_below(of).filter(|_| of.lies_on != Some(Side::Base)).unwrap_or_default();
@@ -225,14 +229,35 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             }
             Some(going) => {
                 let on = of.on_what_moves.map_or_else(String::new, |what| format!(", on {what} that moves"));
+                let so_far = of.rolled.filter(|_| going == Going::Rolls);
+                let so_far =
+                    so_far.map_or_else(String::new, |turn| format!(", {} so far", self::rolled(scene, of, turn)));
                 let rocked = of.stopped_rocking;
                 let rocked = rocked.map_or_else(String::new, |t| format!("stopped rocking at {}, ", time(t)));
-                beside(format!("{rocked}is {}{on}", going.word()))
+                beside(format!("{rocked}is {}{on}{so_far}", going.word()))
             }
             None => beside("still moves".to_owned()),
         },
     };
-    format!("{}{fate}", tumbled.unwrap_or_default())
+    format!("{}{fate}{}", tumbled.or(rolled).unwrap_or_default(), hopped(scene, of))
+}
+
+/// By how much a round block rolled, in words after "rolled".
+fn rolled(scene: &Scene, of: &BodyVerdict, turn: f64) -> String {
+    let radius = scene.blocks.iter().find(|block| block.name == of.body).map_or(0.0, BlockScene::radius);
+    let (way, far) = (direction(scene, -turn).way, with_unit(radius * turn.abs(), "m"));
+    format!("by {far} {way} ({})", turns(turn.abs()))
+}
+
+/// Where a block is that doesn't slide, in words, if that is further from its start than its base is long: hops and flights took it there.
+fn hopped(scene: &Scene, of: &BodyVerdict) -> String {
+    let block = scene.blocks.iter().find(|block| block.name == of.body);
+    let told =
+        matches!(of.what, Fate::Rests | Fate::Rocks | Fate::Moves) && !of.has_slid && of.going != Some(Going::Bounces);
+    let at = of.elsewhere.filter(|at| told && block.is_some_and(|block| at.abs() > block.base()));
+    at.map_or_else(String::new, |at| {
+        format!(", {} {} its start by hops and flights", with_unit(at.abs(), "m"), direction(scene, at).side)
+    })
 }
 
 /// On what blocks stand that have stopped sliding, in words, if the same moves under all of them.
@@ -323,9 +348,7 @@ fn beside_slid(scene: &Scene, of: &BodyVerdict) -> String {
     let told = of.farthest.map_or(slid.abs(), |farthest| farthest.abs() + (slid - farthest).abs());
     let in_all = of.slid_in_all.filter(|in_all| *in_all > MORE * told && is_told(scene, of, in_all - told));
     let in_all = in_all.map(|in_all| format!("{} in all", with_unit(in_all, "m")));
-    // Along a profile of several slopes the way along the surface isn't the way that its start's slope measures.
-    let is_straight = scene.ground.as_ref().is_none_or(|ground| ground.profile.is_none());
-    let place = of.elsewhere.filter(|_| is_straight).map(|at| {
+    let place = of.elsewhere.map(|at| {
         let at_start = !is_told(scene, of, at);
         let where_to = || format!("{} {} its start", with_unit(at.abs(), "m"), direction(scene, at).side);
         format!("with hops and flights {}", if at_start { "back at its start".to_owned() } else { where_to() })

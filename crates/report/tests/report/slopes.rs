@@ -1,0 +1,112 @@
+//! Blocks on ground of several slopes, and those that hop, roll or slide before they overturn.
+
+use crate::page::run;
+
+const STONE: &str =
+    "[material.m]\ndensity = '2000 kg/m^3'\n[block.b]\nmaterial = 'm'\ndepth = '10 cm'\non = 'ground'\n";
+
+fn floor(friction: f64) -> String {
+    format!("[contact.g]\nbetween = ['b', 'ground']\nfriction = {friction}\n")
+}
+
+/// Down a slope of 26.6° and out on level ground, where it stops: `motion` is that of the ground.
+fn down_a_slope(name: &str, motion: &str) -> crate::page::Run {
+    let text = format!(
+        "[time]\nend = '3 s'\nstep = '500 us'\nscheme = 'moreau-jean-located'\n[ground]\n{motion}[ground.profile]\n\
+         points = [['-1 m', '0.5 m'], ['0 m', '0 m'], ['4 m', '0 m']]\n{STONE}width = '10 cm'\nheight = '4 cm'\nat = '-0.5 m'\n{}",
+        floor(0.25)
+    );
+    run(name, &text)
+}
+
+#[test]
+fn what_slid_to_another_slope_lies_flat_there() {
+    let still = down_a_slope("slid-to-another-slope", "");
+    let shaken =
+        "motion = { displacement = ['1 um', '0 m'], signal = 's' }\n[signal.s]\nshape = 'one-sine'\nperiod = '10 ms'\n";
+    let shaken = down_a_slope("slid-to-another-slope-moved", shaken);
+    for ran in [&still, &shaken] {
+        let (summary, of) = (&ran.summary, &ran.summary.verdict[0]);
+        let headline = &summary.headline;
+        assert!(
+            headline.contains("came to rest") && !headline.contains('φ') && !headline.contains("hops"),
+            "{headline}"
+        );
+        assert_eq!(of.lies_on.as_ref().unwrap().word(), "base");
+        // It falls by 25 cm less its share of friction, and turns only as it comes round the foot of the slope.
+        assert!(of.max_phi_over_alpha.unwrap() < 0.05, "{:?}", of.max_phi_over_alpha);
+        let (slid, displaced) = (of.slid.unwrap(), of.displaced.unwrap());
+        assert!(slid > 0.9 && (displaced - slid).abs() < 0.02, "{slid} {displaced}");
+        assert!(summary.peaks.iter().all(|peak| peak.phi.abs() < 0.03), "{:?}", summary.peaks);
+    }
+}
+
+/// It lies as flat on a slope on which it didn't start, above the point of no return of level ground for a taller one.
+#[test]
+fn what_began_on_level_ground_and_came_down_on_a_slope_is_measured_from_that() {
+    let text = format!(
+        "[time]\nend = '2 s'\nstep = '500 us'\n[ground.profile]\npoints = [['-1 m', '0 m'], ['0 m', '0 m'], ['1 m', '0.36397 m'], ['2 m', '0.36397 m']]\n\
+         {STONE}width = '10 cm'\nheight = '4 cm'\nat = '-20 cm'\nvelocity = ['2 m/s', '0 m/s']\n{}",
+        floor(0.45)
+    );
+    let ran = run("came-up-a-slope", &text);
+    let of = &ran.summary.verdict[0];
+    assert_eq!(of.lies_on.as_ref().unwrap().word(), "base", "{}", ran.summary.headline);
+    assert!(!ran.summary.headline.contains("at φ"), "{}", ran.summary.headline);
+}
+
+#[test]
+fn what_hopped_further_than_its_base_is_told_where_it_is() {
+    let text = format!(
+        "[time]\nend = '2 s'\nstep = '200 us'\n[ground]\n{STONE}width = '10 cm'\nheight = '1 cm'\nat = '0 m'\nvelocity = ['0.6 m/s', '2 m/s']\n{}",
+        floor(0.9)
+    );
+    let ran = run("hopped-aside", &text);
+    let of = &ran.summary.verdict[0];
+    let displaced = of.displaced.unwrap();
+    // 2 · 2/9.81 s in the air.
+    assert!((displaced - 0.6 * 4.0 / 9.81).abs() < 0.01 && of.slid.unwrap().abs() < 1e-3, "{displaced} {:?}", of.slid);
+    let headline = &ran.summary.headline;
+    assert!(
+        headline.contains("came to rest") && headline.contains(" right of its start by hops and flights"),
+        "{headline}"
+    );
+}
+
+/// It slides down a slope and stumbles over a step at its foot.
+#[test]
+fn what_overturned_is_told_how_far_it_slid_before() {
+    let text = format!(
+        "[time]\nend = '1.5 s'\nstep = '200 us'\n[ground.profile]\n\
+         points = [['-2 m', '1 m'], ['0 m', '0 m'], ['1 mm', '4 cm'], ['3 m', '4 cm']]\n{STONE}width = '10 cm'\nheight = '12 cm'\nat = '-0.6 m'\n{}",
+        floor(0.1)
+    );
+    let ran = run("slid-and-overturned", &text);
+    let of = &ran.summary.verdict[0];
+    assert!(ran.summary.headline.contains("overturned"), "{}", ran.summary.headline);
+    // From 5 cm before the foot of the slope its lower edge is at the step.
+    let slid = of.slid.unwrap();
+    assert!((slid - (0.6_f64.hypot(0.3) - 0.05)).abs() < 0.06, "{slid}");
+    assert!(of.slid_in_all.unwrap() >= slid && of.displaced.is_none());
+}
+
+#[test]
+fn a_disc_that_rolls_is_told_to_have_rolled() {
+    let rolling = |end: &str, friction: f64, spin: f64| {
+        let text = format!(
+            "[time]\nend = '{end}'\nstep = '1 ms'\n[ground.profile]\npoints = [['-9 m', '0 m'], ['1 m', '0 m'], ['2 m', '1 m'], ['9 m', '1 m']]\n\
+             [material.m]\ndensity = '2000 kg/m^3'\n[block.b]\nmaterial = 'm'\nradius = '5 cm'\ndepth = '10 cm'\nposition = ['0 m', '5 cm']\n\
+             velocity = ['1 m/s', '0 m/s']\nspin = '{spin} rad/s'\n{}",
+            floor(friction)
+        );
+        run(&format!("rolled-{end}-{friction}"), &text).summary.headline
+    };
+    let so_far = rolling("0.6283 s", 0.5, -20.0);
+    assert!(
+        so_far.starts_with("`b` is still rolling, by 62") && so_far.ends_with(" mm to the right (2 turns) so far"),
+        "{so_far}"
+    );
+    // What turns backwards as it goes doesn't roll.
+    let slides = rolling("50 ms", 0.01, 400.0);
+    assert_eq!(slides, "`b` is still sliding");
+}
