@@ -36,7 +36,7 @@ fn what_slid_to_another_slope_lies_flat_there() {
         // It falls by 25 cm less its share of friction, and turns only as it comes round the foot of the slope.
         assert!(of.max_phi_over_alpha.unwrap() < 0.05, "{:?}", of.max_phi_over_alpha);
         let (slid, displaced) = (of.slid.unwrap(), of.displaced.unwrap());
-        assert!(slid > 0.9 && (displaced - slid).abs() < 0.02, "{slid} {displaced}");
+        assert!(slid > 0.8 && (displaced - slid).abs() < 0.02, "{slid} {displaced}");
         assert!(summary.peaks.iter().all(|peak| peak.phi.abs() < 0.03), "{:?}", summary.peaks);
     }
 }
@@ -102,10 +102,7 @@ fn a_disc_that_rolls_is_told_to_have_rolled() {
         run(&format!("rolled-{end}-{friction}"), &text).summary.headline
     };
     let so_far = rolling("0.6283 s", 0.5, -20.0);
-    assert!(
-        so_far.starts_with("`b` is still rolling, by 62") && so_far.ends_with(" mm to the right (2 turns) so far"),
-        "{so_far}"
-    );
+    assert_eq!(so_far, "`b` is still rolling, by 629 mm to the right (2.00 turns) so far");
     // What turns backwards as it goes doesn't roll.
     let slides = rolling("50 ms", 0.01, 400.0);
     assert_eq!(slides, "`b` is still sliding");
