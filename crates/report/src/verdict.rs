@@ -129,6 +129,8 @@ struct Seen {
     still: Option<f64>,
     /// Since when it is also still relative to the supports of the beam that carries it, or to what else does, s.
     unmoved: Option<f64>,
+    /// When what carries it last moved, or was to, s.
+    carried: Option<f64>,
     /// How long it was still at most between two motions, s; `None` before the first.
     paused: Option<f64>,
     /// Whether its mass centre has been over its beam, and since when it is past an end, s, and which.
@@ -334,6 +336,10 @@ impl Fates {
                 seen.dropped = if drop > watched.thickness { seen.dropped.or(Some(t)) } else { None };
             }
             seen.touched.rise(watched.clearance(layout, number, state));
+            let [vx, vy, _] = watched.carrier.velocity([q[0], q[1]], None, layout, state);
+            if t < watched.driven_until || vx.hypot(vy) > watched.still_speed {
+                seen.carried = Some(t);
+            }
             let is_unmoved = watched.speed_over_base(layout, number, state) <= watched.still_speed;
             seen.unmoved = if is_unmoved { seen.unmoved.or(Some(t)) } else { None };
             let speed = watched.speed(layout, number, state);

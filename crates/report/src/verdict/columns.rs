@@ -431,6 +431,22 @@ mod tests {
         assert_eq!(fates.group(&watch, &layout, 0, (AsOne::SoFar, &state)), [0, 1]);
     }
 
+    #[test]
+    fn what_slid_or_hopped_by_a_hundredth_of_its_base_kept_no_place() {
+        let (scene, layout, state, fates) = stack();
+        let mut watch = Watch::of(&scene, &layout);
+        let [_, _, mut of] = fates.verdict(&scene, &layout, &state, &[]).try_into().unwrap();
+        for (slid, displaced, keeps) in
+            [(0.001, 0.001, true), (-0.003, 0.0, false), (0.001, 0.02, false), (0.0, -0.003, false)]
+        {
+            (of.slid, of.displaced) = (Some(slid), Some(displaced));
+            assert_eq!(keeps_its_place(&watch.blocks[2], &of), keeps, "{slid} {displaced}");
+        }
+        // Of what has no base nothing is told to have slid, here as elsewhere.
+        watch.blocks[2].feet = None;
+        assert!(keeps_its_place(&watch.blocks[2], &of));
+    }
+
     /// The weight of a part of a stack, one block after the other, is that of all of them at once.
     #[test]
     fn parts_of_a_stack_lean_as_their_blocks_together() {

@@ -46,7 +46,11 @@ pub(crate) fn headline(
 /// A part of the yield strength in percent. With blocks it is the stress of impacts, which depends on step and elements: `about`.
 pub(crate) fn percent(part: f64, verdict: &[BodyVerdict]) -> String {
     let (digits, cap, about) = if verdict.is_empty() { (3, 99.9, "") } else { (2, 99.0, "about ") };
-    let percent = if part < 1.0 { (100.0 * part).min(cap) } else { 100.0 * part };
+    // Which side of 100 % it is on isn't rounded away.
+    let (percent, digits) = if part < 1.0 { ((100.0 * part).min(cap), digits) } else { (100.0 * part, 3) };
+    if percent > 100.0 && percent < 100.5 {
+        return "over 100 %".to_owned();
+    }
     format!("{about}{} %", teeter_scenario::readable::shortest(percent, digits))
 }
 
@@ -291,8 +295,8 @@ fn direction(scene: &Scene, slid: f64) -> Direction {
     let [across, down] = [scene.gravity[0], 0.0 - scene.gravity[1]];
     let slope = ground.map_or(0.0, |ground| ground.incline - across.atan2(down));
     let (way, side) = match (slope.abs() >= STEEP, slid < 0.0) {
-        (true, _) if slope * slid > 0.0 => ("up the slope", "above"),
-        (true, _) => ("down the slope", "below"),
+        (true, _) if slope * slid > 0.0 => ("up the slope", "up the slope from"),
+        (true, _) => ("down the slope", "down the slope from"),
         (false, true) => ("to the left", "left of"),
         (false, false) => ("to the right", "right of"),
     };
@@ -333,7 +337,14 @@ fn side_below(of: &BodyVerdict) -> Option<String> {
 /// How far to the left and to the right of its start a block has been (m), in words, as far as that is told.
 fn up_to(scene: &Scene, of: &BodyVerdict, reached: [f64; 2]) -> String {
     let far = reached.iter().fold(0.0, |far: f64, way| far.max(way.abs()));
-    let told = |way: f64| format!("{} {}", like(way.abs(), far, "m"), direction(scene, way).side);
+    let by = |way: f64| like(way.abs(), far, "m");
+    if of.elsewhere.is_some() {
+        // Hops and flights took it elsewhere: these ways are not from its start.
+        let told = |way: f64| format!("{} {}", by(way), direction(scene, way).way);
+        let ways: Vec<String> = reached.into_iter().filter(|way| is_told(scene, of, *way)).map(told).collect();
+        return if ways.is_empty() { "where it stands".to_owned() } else { format!("by up to {}", ways.join(" and ")) };
+    }
+    let told = |way: f64| format!("{} {}", by(way), direction(scene, way).side);
     match reached.map(|way| is_told(scene, of, way).then(|| told(way))) {
         [Some(left), Some(right)] => format!("up to {left} and {right} its start"),
         [Some(way), None] | [None, Some(way)] => format!("up to {way} its start"),
@@ -361,4 +372,18 @@ fn beside_slid(scene: &Scene, of: &BodyVerdict) -> String {
 fn is_told(scene: &Scene, of: &BodyVerdict, way: f64) -> bool {
     let block = scene.blocks.iter().find(|block| block.name == of.body);
     block.is_some_and(|block| way.abs() >= super::SLID * block.base())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_of_a_limit_is_not_rounded_to_the_other_side_of_it() {
+        for (part, told) in
+            [(0.123, "12.3 %"), (0.9999, "99.9 %"), (1.0, "100 %"), (1.002, "over 100 %"), (1.047, "105 %")]
+        {
+            assert_eq!(percent(part, &[]), told, "{part}");
+        }
+    }
 }

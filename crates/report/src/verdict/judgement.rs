@@ -116,10 +116,8 @@ impl Seen {
         let going = going.or((moves && stands_on_both && rocked).then_some(Going::Vibrates));
         let for_an_instant = self.still.is_some_and(|since| state.t - since < watched.still_time);
         let q = &state.q[layout.blocks[number].range.clone()];
-        let carrier_moves = || {
-            let [vx, vy, _] = watched.carrier.velocity([q[0], q[1]], None, layout, state);
-            state.t < watched.driven_until || vx.hypot(vy) > watched.still_speed
-        };
+        // What swings stands still twice a period.
+        let carrier_moves = || self.carried.is_some_and(lately);
         // Where what carries it is shaken, it may slide on.
         let stopped = what == Fate::Slid
             && rests.is_none()
@@ -173,7 +171,9 @@ impl Seen {
             turned: (what == Fate::Overturned && turned.abs() >= TUMBLED).then_some(turned.abs()),
             is_carried: rests.is_some() && {
                 let [vx, vy, spin] = watched.carrier.base_velocity([q[0], q[1]], layout, state);
-                state.t < watched.driven_until || vx.hypot(vy) + watched.reach * spin.abs() > watched.still_speed
+                // A record may end with the run.
+                state.t < watched.driven_until + watched.still_time
+                    || vx.hypot(vy) + watched.reach * spin.abs() > watched.still_speed
             },
             tumbled: tumbled.filter(|turn| turn.abs() >= TUMBLED),
             on_its_way: on_its_way.map(|_| tilt),

@@ -107,3 +107,49 @@ fn a_disc_that_rolls_is_told_to_have_rolled() {
     let slides = rolling("50 ms", 0.01, 400.0);
     assert_eq!(slides, "`b` is still sliding");
 }
+
+#[test]
+fn what_slid_back_past_its_start_is_down_the_slope_from_it() {
+    let (sin, cos) = 20_f64.to_radians().sin_cos();
+    let text = format!(
+        "[time]\nend = '1.5 s'\nstep = '500 us'\n[ground]\nincline = '20 deg'\n{STONE}width = '10 cm'\nheight = '4 cm'\nat = '0 m'\n\
+         velocity = ['{} m/s', '{} m/s']\n{}",
+        2.0 * cos,
+        2.0 * sin,
+        floor(0.2)
+    );
+    let headline = run("slid-up-and-down", &text).summary.headline;
+    assert!(
+        headline.contains(" up the slope, then back to ")
+            && headline.ends_with(" down the slope from its start so far"),
+        "{headline}"
+    );
+}
+
+/// Its rocking dies out while the ground moves, which it does up to the end of the run.
+#[test]
+fn what_came_to_rest_on_ground_that_moves_up_to_the_end_says_so() {
+    let text = format!(
+        "[time]\nend = '2 s'\nstep = '500 us'\n[ground]\nmotion = {{ acceleration = ['0.05 m/s^2', '0 m/s^2'], signal = 's' }}\n\
+         [signal.s]\nshape = 'one-sine'\nperiod = '2 s'\n{STONE}width = '10 cm'\nheight = '10 cm'\nat = '0 m'\ntilt = '1 deg'\n{}",
+        floor(0.6)
+    );
+    let headline = run("rests-on-moving-ground", &text).summary.headline;
+    assert!(headline.contains("came to rest on the moving ground at t = "), "{headline}");
+}
+
+/// At a turning point of the beam, and between two, what trembles on it stands on a beam that moves.
+#[test]
+fn whether_a_beam_moves_is_not_asked_of_the_last_instant() {
+    for end in ["1.95 s", "2 s"] {
+        let text = format!(
+            "[time]\nend = '{end}'\nstep = '50 us'\n[material.steel]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n[beam.arm]\n\
+             material = 'steel'\nspan = '1.2 m'\nwidth = '8 cm'\nthickness = '12 mm'\nelements = 24\nsupports = ['clamped', 'free']\n\
+             damping_ratio = {{ mode = 1, ratio = 0.01 }}\nstart = 'static'\n[block.vase]\ndensity = '2700 kg/m^3'\nwidth = '8 cm'\n\
+             height = '24 cm'\ndepth = '8 cm'\non = 'arm'\nat = '90 cm'\ntilt = '5 deg'\n[contact.feet]\nbetween = ['vase', 'arm']\n\
+             friction = 0.6\n"
+        );
+        let headline = run(&format!("trembles-{end}"), &text).summary.headline;
+        assert!(headline.contains("trembling where it stands, on a beam that moves"), "{end}: {headline}");
+    }
+}
