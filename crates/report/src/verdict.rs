@@ -323,7 +323,7 @@ impl Fates {
                     let lies = edge.lies.or_else(|| watched.outline.as_ref()?.lies(edge, way));
                     stance.edge_mut(way).lies = lies;
                     seen.stance = KnownStance(Some(Some(stance)));
-                    let slope = || watched.slope(layout, number, state);
+                    let slope = || watched.slope(&state.q);
                     let way_down = lies.map(|lies| way.sign() * (lies + slope() - edge.top));
                     seen.fallen |= way_down.is_some_and(|way_down| past(q[2]) >= FALLEN * way_down);
                 }

@@ -19,7 +19,9 @@ pub(super) struct Carrier {
     root: On,
     /// The slope of fixed ground, or of a profile under the block at the start relative to moving ground, rad.
     incline: f64,
-    /// The ground, if it carries the block and has a profile.
+    /// The slope of fixed ground that carries the block, directly or by others, as `incline` is of what carries it directly.
+    foot: f64,
+    /// The ground, if it carries the block, directly or by others, and has a profile.
     terrain: Option<Terrain>,
     /// Other beams that continue the one it stands on, by their numbers, and where their left ends are while their supports don't move, m.
     beside: Vec<(usize, [f64; 2])>,
@@ -109,7 +111,7 @@ impl Carrier {
             // In a crowd, or alone: moving ground moves all.
             None => layout.ground.clone().map_or(On::Fixed, On::Ground),
         };
-        let mut root = support(number);
+        let (mut root, mut lowest) = (support(number), number);
         let free = |of: Option<SupportingBody>| match of {
             Some(SupportingBody::Block(below)) if !scene.blocks[below].motion.is_given() => Some(below),
             _ => None,
@@ -117,51 +119,52 @@ impl Carrier {
         // At most as many storeys as there are blocks.
         for _ in 0..scene.blocks.len() {
             let Some(below) = free(root) else { break };
-            root = support(below);
+            (root, lowest) = (support(below), below);
         }
         if free(root).is_some() {
             root = None;
         }
         // The tilt is measured from what carries the block: the rest of the angle is its slope.
-        let incline = if matches!(support(number), Some(SupportingBody::Ground)) {
-            let own = layout.blocks[number].range.end;
+        let on_ground = matches!(root, Some(SupportingBody::Ground));
+        let foot = if on_ground {
+            let own = layout.blocks[lowest].range.end;
             let q = vec![0.0; layout.ground.as_ref().map_or(own, |ground| own.max(ground.end))];
-            -layout.tilt(number, &q)
+            -layout.tilt(lowest, &q)
         } else {
             0.0
         };
+        let incline = if lowest == number { foot } else { 0.0 };
         let beside = match support(number) {
             Some(SupportingBody::Beam(beam)) => continued(scene, number, beam),
             _ => Vec::new(),
         };
         let ground = scene.ground.as_ref().map(|ground| ground.incline);
-        let on_ground = matches!(support(number), Some(SupportingBody::Ground));
-        let terrain = if on_ground { Terrain::of(scene, layout, number) } else { None };
-        Self { on: of(support(number)), root: of(root), incline, terrain, beside, ground }
+        let terrain = if on_ground { Terrain::of(scene, layout, lowest) } else { None };
+        Self { on: of(support(number)), root: of(root), incline, foot, terrain, beside, ground }
     }
 
-    /// The slope of the ground that carries the block, where that is with its coordinates `own`, rad; 0 of other carriers.
-    pub(super) fn slope(&self, own: &[f64], q: &[f64]) -> f64 {
-        if let Some(slope) = self.terrain.as_ref().and_then(|terrain| terrain.slope(own, q)) {
+    /// The slope of the ground that carries the block, directly or by others, where it or the lowest of these is, rad; 0 of other carriers.
+    pub(super) fn slope(&self, q: &[f64]) -> f64 {
+        if let Some(slope) = self.terrain.as_ref().and_then(|terrain| terrain.slope(q)) {
             return slope;
         }
-        match &self.on {
-            On::Ground(range) => q[range.start + 2] + self.incline,
-            On::Fixed => self.incline,
+        match &self.root {
+            On::Ground(range) => q[range.start + 2] + self.foot,
+            On::Fixed => self.foot,
             On::Beam(..) | On::Block(_) => 0.0,
         }
     }
 
-    /// The slope of what carries the block, where that is with its coordinates `own`, rad.
-    pub(super) fn turn(&self, own: &[f64], layout: &Layout, q: &[f64]) -> f64 {
+    /// The slope of what carries the block, where the block is, rad.
+    pub(super) fn turn(&self, at: [f64; 2], layout: &Layout, q: &[f64]) -> f64 {
         match &self.on {
             On::Beam(beam, position) => {
                 let place = &layout.beams[*beam];
                 let [x, _] = beam_origin(*beam, *position, layout, q);
-                place.deflection(&place.beam.shape_clamped(own[0] - x), &q[place.range.clone()]).slope
+                place.deflection(&place.beam.shape_clamped(at[0] - x), &q[place.range.clone()]).slope
             }
             On::Block(range) => q[range.start + 2],
-            On::Ground(_) | On::Fixed => self.slope(own, q),
+            On::Ground(_) | On::Fixed => self.slope(q),
         }
     }
 
@@ -231,14 +234,19 @@ impl Carrier {
         }
     }
 
+    /// The ground, if it has a profile and the block stands on it.
+    fn own_terrain(&self) -> Option<&Terrain> {
+        self.terrain.as_ref().filter(|_| !matches!(self.on, On::Block(_)))
+    }
+
     /// Whether the block stands on ground with a profile.
     pub(super) fn is_terrain(&self) -> bool {
-        self.terrain.is_some()
+        self.own_terrain().is_some()
     }
 
     /// Where a point is along what carries the block, m; on a profile along its surface.
     pub(super) fn along(&self, at: [f64; 2], layout: &Layout, q: &[f64]) -> f64 {
-        if let Some(terrain) = &self.terrain {
+        if let Some(terrain) = self.own_terrain() {
             return terrain.along(at, q);
         }
         let (origin, slope) = match &self.on {

@@ -197,7 +197,7 @@ impl Fates {
         let angle = |number: usize| state.q[layout.blocks[number].range.start + 2];
         let (blocks, level) = (&watch.blocks, watch.blocks[root].outline.as_ref().map_or(0.0, |of| of.level()));
         let edges = edges(blocks, layout, state, group, root).filter(|[left, right]| {
-            let slope = blocks[root].slope(layout, root, state);
+            let slope = blocks[root].slope(&state.q);
             let room = |edge: f64| edge - slope;
             let [to_left, to_right] = self.blocks[root].turned;
             let (left, right) = (room(*left), -room(*right));
@@ -369,7 +369,7 @@ fn critical_angles(
     group: &[usize],
     root: usize,
 ) -> Option<[f64; 2]> {
-    let slope = watched[root].slope(layout, root, state);
+    let slope = watched[root].slope(&state.q);
     edges(watched, layout, state, group, root).map(|[left, right]| [left - slope, slope - right])
 }
 

@@ -285,8 +285,7 @@ impl Seen {
     /// speed, lies as flat, and doesn't go along what carries it. What tips up rises no more at first, but about a corner.
     fn hops(&self, watched: &Watched, layout: &Layout, number: usize, state: &State) -> bool {
         let [vx, vy, _] = watched.velocity(layout, number, state);
-        let own = &state.q[layout.blocks[number].range.clone()];
-        let (sin, cos) = watched.carrier.slope(own, &state.q).sin_cos();
+        let (sin, cos) = watched.carrier.slope(&state.q).sin_cos();
         let goes = (cos * vx + sin * vy).abs();
         let rises = watched.speed(layout, number, state).powi(2) / (2.0 * watched.gravity);
         let has_landed = self.touched.landed.is_some_and(|landed| state.t - landed <= SETTLED * watched.still_time);

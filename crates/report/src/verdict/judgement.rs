@@ -85,9 +85,10 @@ impl Seen {
             _ if has_slid => (Fate::Slid, None, None),
             _ => (Fate::Moves, None, None),
         };
+        let side_on = |slope: f64| Side::below(block, watched.outline.as_ref()?, self.angle - slope);
+        // What stands on a block that leans lies flat on that.
         let lies_on = rests
-            .and(watched.outline.as_ref())
-            .and_then(|outline| Side::below(block, outline, self.angle - watched.slope(layout, number, state)));
+            .and_then(|_| side_on(watched.slope(&state.q)).or_else(|| side_on(watched.turn(layout, number, state))));
         let leans = rests.is_some() && lies_on.is_none() && watched.outline.is_some();
         let turned = self.angle - self.from;
         // Where pieces of a profile meet, a base goes a little less far than its feet.

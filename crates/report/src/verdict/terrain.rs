@@ -13,7 +13,9 @@ pub(super) struct Terrain {
     profile: Arc<Profile>,
     /// The indices of the coordinates of the ground, if it moves.
     ground: Option<Range<usize>>,
-    /// In the frame of the block, m.
+    /// The indices of the coordinates of the block.
+    block: Range<usize>,
+    /// In its frame, m.
     corners: Vec<[f64; 2]>,
 }
 
@@ -22,7 +24,7 @@ impl Terrain {
     pub(super) fn of(scene: &Scene, layout: &Layout, number: usize) -> Option<Self> {
         let profile = Arc::clone(scene.ground.as_ref()?.profile.as_ref()?);
         let corners = scene.blocks[number].corners().iter().map(|corner| [corner.x, corner.y]).collect();
-        Some(Self { profile, ground: layout.ground.clone(), corners })
+        Some(Self { profile, ground: layout.ground.clone(), block: layout.blocks[number].range.clone(), corners })
     }
 
     /// A point as the ground has it, and the turn of that, rad.
@@ -38,9 +40,10 @@ impl Terrain {
         along(&self.profile, self.local(at, q).0)
     }
 
-    /// The slope with which the lowest side of the block, at its coordinates `own`, would lie where it is, rad: over a crest the one nearest to its own.
+    /// The slope with which the lowest side of the block would lie where it is, rad: over a crest the one nearest to its own.
     /// `None` of a block without sides, and on ground too steep to lie on.
-    pub(super) fn slope(&self, own: &[f64], q: &[f64]) -> Option<f64> {
+    pub(super) fn slope(&self, q: &[f64]) -> Option<f64> {
+        let own = &q[self.block.clone()];
         let (sin, cos) = own[2].sin_cos();
         let mut turn = 0.0;
         // The ends of that side are the two corners that are nearest to the ground.

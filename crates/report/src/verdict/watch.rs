@@ -124,7 +124,7 @@ impl Watch {
         let lowest = self.blocks[number].lowest;
         let level = self.blocks[number].outline.as_ref().map_or(0.0, Outline::level);
         let chord = self.blocks[lowest].chord(layout, lowest, state);
-        chord.map_or_else(|| self.blocks[number].slope(layout, number, state), |chord| chord - level)
+        chord.map_or_else(|| self.blocks[number].slope(&state.q), |chord| chord - level)
     }
 
     /// From which angle on each block rocks, in a word, rad; 0 of one that can't overturn.
@@ -147,17 +147,16 @@ impl Watched {
         self.feet.map_or(f64::INFINITY, |[left, right]| right[0] - left[0])
     }
 
-    /// The slope of what carries it, where it is, against the level of gravity, rad.
-    pub(super) fn slope(&self, layout: &Layout, number: usize, state: &State) -> f64 {
-        let own = &state.q[layout.blocks[number].range.clone()];
-        self.carrier.slope(own, &state.q) - self.outline.as_ref().map_or(0.0, Outline::level)
+    /// The slope of the ground that carries it, directly or by others, where it is, against the level of gravity, rad.
+    pub(super) fn slope(&self, q: &[f64]) -> f64 {
+        self.carrier.slope(q) - self.outline.as_ref().map_or(0.0, Outline::level)
     }
 
     /// Its angle against what carries it, from which its crossings and peaks count, rad: on ground with a profile against its slope where the block
     /// is, on a beam against its undeformed axis.
     pub(super) fn against_carrier(&self, layout: &Layout, number: usize, q: &[f64]) -> f64 {
-        let own = &q[layout.blocks[number].range.clone()];
-        if self.carrier.is_terrain() { own[2] - self.carrier.slope(own, q) } else { layout.tilt(number, q) }
+        let phi = q[layout.blocks[number].range.start + 2];
+        if self.carrier.is_terrain() { phi - self.carrier.slope(q) } else { layout.tilt(number, q) }
     }
 
     /// The slope of the beam that carries it between its feet, put flat about the foot on which it is tilted, rad; `None` on anything else.
@@ -231,11 +230,16 @@ impl Watched {
         self.total([v[0] - base[0], v[1] - base[1], v[2] - base[2]])
     }
 
+    /// The slope of what carries it directly, where it is, against the level of gravity, rad.
+    pub(super) fn turn(&self, layout: &Layout, number: usize, state: &State) -> f64 {
+        let q = &state.q[layout.blocks[number].range.clone()];
+        self.carrier.turn([q[0], q[1]], layout, &state.q) - self.outline.as_ref().map_or(0.0, Outline::level)
+    }
+
     /// By how much it is turned from lying flat on what carries it, where the block is, rad; 0 of one that has no sides to lie on.
     pub(super) fn turned(&self, layout: &Layout, number: usize, state: &State) -> f64 {
         let q = &state.q[layout.blocks[number].range.clone()];
-        let level = self.carrier.turn(q, layout, &state.q);
-        let level = level - self.outline.as_ref().map_or(0.0, Outline::level);
+        let level = self.turn(layout, number, state);
         let stance = self.outline.as_ref().and_then(|outline| outline.stance(q[2] - level));
         stance.map_or(0.0, |stance| q[2] - level - stance.flat)
     }

@@ -120,7 +120,7 @@ fn what_slid_back_past_its_start_is_down_the_slope_from_it() {
     );
     let headline = run("slid-up-and-down", &text).summary.headline;
     assert!(
-        headline.contains(" up the slope, then back to ")
+        headline.contains(" up the slope, then to ")
             && headline.ends_with(" down the slope from its start so far"),
         "{headline}"
     );
@@ -151,5 +151,26 @@ fn whether_a_beam_moves_is_not_asked_of_the_last_instant() {
         );
         let headline = run(&format!("trembles-{end}"), &text).summary.headline;
         assert!(headline.contains("trembling where it stands, on a beam that moves"), "{end}: {headline}");
+    }
+}
+
+/// The upper ones lie flat, too, on blocks on the slope, and have turned by nothing.
+#[test]
+fn a_stack_on_a_slope_stands_upright_on_that() {
+    for (name, ground) in [
+        ("incline", "[ground]\nincline = '20 deg'\n"),
+        ("profile", "[ground.profile]\npoints = [['-1 m', '0 m'], ['0 m', '0 m'], ['1 m', '0.36397 m']]\n"),
+    ] {
+        let stone = STONE.replace("material = 'm'", "material = 'm'\nrepeat = { count = 2, stacked = true }");
+        let text = format!(
+            "[time]\nend = '0.4 s'\nstep = '1 ms'\n{ground}{stone}width = '20 cm'\nheight = '10 cm'\nat = '0.5 m'\n\
+             [contact.g]\nbetween = ['*', 'ground']\nfriction = 0.6\n[contact.j]\nbetween = ['*', '*']\nfriction = 0.6\n"
+        );
+        let ran = run(&format!("stack-on-{name}"), &text);
+        assert_eq!(ran.summary.headline, "`b-1` stood still throughout; `b-2` stood still throughout", "{name}");
+        for of in &ran.summary.verdict {
+            assert_eq!(of.lies_on.as_ref().unwrap().word(), "base", "{name}");
+            assert!(of.max_phi_over_alpha.unwrap() < 1e-9, "{name}: {:?}", of.max_phi_over_alpha);
+        }
     }
 }
