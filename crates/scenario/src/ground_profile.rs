@@ -83,17 +83,15 @@ fn resting_line(profile: &Profile, at: f64, width: f64) -> Option<Line> {
     ((next - slope).abs() <= 1e3 * SAME_SLOPE).then_some([at, height, next])
 }
 
-/// The slopes (rad), the least and the largest, with which a base of this width lies on the ground with its midpoint at x = `at` (m),
-/// the same but where the middle half of the base is over a crest, about which it turns without being
-/// lifted. `None` on ground too steep to lay a base on.
+/// The slopes (rad), the least and the largest, with which a base between two places, x in m, lies on the ground: the same but where
+/// its middle half is over a crest, about which it turns without being lifted. `None` where the second isn't to the right of the first.
 #[must_use]
-pub fn slopes_of_base(profile: &Profile, at: f64, width: f64) -> Option<[f64; 2]> {
-    let [_, _, slope] = resting_line(profile, at, width)?;
-    let reach = 0.5 * width * slope.cos();
-    let middle = |two: &&[Vector2<f64>]| two[1].x > at - 0.5 * reach && two[0].x < at + 0.5 * reach;
-    let hull = hull_over(profile, [at - reach, at + reach]);
-    let slopes = hull.windows(2).filter(middle).map(slope_between);
-    Some(slopes.fold([slope; 2], |[least, most], slope| [least.min(slope), most.max(slope)]))
+pub fn slopes_of_base(profile: &Profile, [left, right]: [f64; 2]) -> Option<[f64; 2]> {
+    let quarter = 0.25 * (right - left);
+    let middle = |two: &&[Vector2<f64>]| two[1].x > left + quarter && two[0].x < right - quarter;
+    let hull = hull_over(profile, [left, right]);
+    let slopes = hull.windows(2).filter(middle).map(slope_between).map(|slope| [slope; 2]);
+    slopes.reduce(|[least, most], [slope, _]| [least.min(slope), most.max(slope)])
 }
 
 /// How far a place over the ground is along its surface, to the right of the first point of the profile, m.

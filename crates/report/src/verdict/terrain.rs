@@ -41,7 +41,7 @@ impl Terrain {
     }
 
     /// The slope with which the lowest side of the block would lie where it is, rad: over a crest the one nearest to its own.
-    /// `None` of a block without sides, and on ground too steep to lie on.
+    /// `None` of a block without sides, and where that side is upright.
     pub(super) fn slope(&self, q: &[f64]) -> Option<f64> {
         let own = &q[self.block.clone()];
         let (sin, cos) = own[2].sin_cos();
@@ -66,7 +66,8 @@ impl Terrain {
             (left, right) = (right, left);
         }
         let [width, rise] = [right[0] - left[0], right[1] - left[1]];
-        let [least, most] = slopes_of_base(&self.profile, 0.5 * (left[0] + right[0]), width.hypot(rise))?;
-        Some(turn + rise.atan2(width).clamp(least, most))
+        let [least, most] = slopes_of_base(&self.profile, [left[0], right[0]])?;
+        // Not `clamp`: what is no number any more isn't to end the program.
+        Some(turn + rise.atan2(width).max(least).min(most))
     }
 }

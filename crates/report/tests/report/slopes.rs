@@ -120,8 +120,7 @@ fn what_slid_back_past_its_start_is_down_the_slope_from_it() {
     );
     let headline = run("slid-up-and-down", &text).summary.headline;
     assert!(
-        headline.contains(" up the slope, then to ")
-            && headline.ends_with(" down the slope from its start so far"),
+        headline.contains(" up the slope, then to ") && headline.ends_with(" down the slope from its start so far"),
         "{headline}"
     );
 }
