@@ -1,6 +1,6 @@
 //! The largest deflection of each beam of a scene without blocks: what became of it, as no block says anything.
 
-use crate::first::exceeds;
+use crate::first;
 use serde::{Deserialize, Serialize};
 use teeter_beam::ShapeAt;
 use teeter_integrator::State;
@@ -37,17 +37,27 @@ impl Places {
         Self { beams: places.collect() }
     }
 
-    /// Takes a state in.
-    pub(crate) fn look(&self, layout: &Layout, state: &State, largest: &mut Vec<LargestDeflection>) {
+    /// Takes a state in; `first` are the deflections at the times told.
+    pub(crate) fn look(
+        &self,
+        layout: &Layout,
+        state: &State,
+        largest: &mut Vec<LargestDeflection>,
+        first: &mut Vec<f64>,
+    ) {
+        first.resize(self.beams.len(), 0.0);
         for (number, (places, beam)) in self.beams.iter().zip(&layout.beams).enumerate() {
             if largest.len() == number {
                 largest.push(LargestDeflection { beam: beam.name.clone(), w: 0.0, x: 0.0, t: state.t });
             }
             for (x, shape) in places {
                 let w = beam.deflection(shape, &state.q).w;
-                if exceeds(w.abs(), largest[number].w.abs()) {
-                    (largest[number].w, largest[number].x, largest[number].t) = (w, *x, state.t);
+                let of = &mut largest[number];
+                let mut most = of.w.abs();
+                if first::enter(w.abs(), &mut most, &mut first[number]) {
+                    (of.w, of.x, of.t) = (w, *x, state.t);
                 }
+                of.w = most.copysign(of.w);
             }
         }
     }

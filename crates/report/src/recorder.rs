@@ -12,7 +12,7 @@ use crate::resolution::{Bodies, Resolution};
 use crate::sections::{BeamRecord, Sections, Values};
 use crate::swings::{Swings, Watch};
 use crate::table::Table;
-use crate::verdict::{self, Fates};
+use crate::verdict::{self, Fates, Tilt};
 use crate::{EndedWord, Results, ResultsError, Schedule, SharedStances, WarningLog};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -69,6 +69,9 @@ pub struct Record {
     /// The largest deflections, of a scene without blocks.
     #[serde(default)]
     pub deflections: Vec<LargestDeflection>,
+    /// The deflections at the times told of these, m.
+    #[serde(default)]
+    pub first_deflections: Vec<f64>,
     /// What became of the blocks.
     pub fates: Fates,
     /// What the run warned of.
@@ -467,6 +470,11 @@ impl<'a> Recorder<'a> {
     pub(crate) fn closed(&self) -> &[Closed] {
         &self.closed
     }
+
+    fn look_at_deflections(&mut self, state: &State) {
+        let Record { deflections, first_deflections, .. } = &mut self.kept.record;
+        self.places.look(self.layout, state, deflections, first_deflections);
+    }
 }
 
 impl Observer<2> for Recorder<'_> {
@@ -478,16 +486,17 @@ impl Observer<2> for Recorder<'_> {
         self.kept.resolution.start(self.layout, state);
         self.kept.swings.start(&self.watch);
         self.kept.record.fates.start(&self.fate_watch, self.layout, model, state)?;
-        let started = |(((tilt, line), place), rocks): (((f64, Option<f64>), &BlockPlace), f64)| {
+        let Record { rocking, feet_lines, fates, .. } = &mut self.kept.record;
+        let monitor = |tilt: f64, least: f64| RockingMonitor::new(state.t, tilt).with_least(least);
+        let line = |((tilt, place), rocks): ((Tilt, &BlockPlace), f64)| {
             // A beam that vibrates lifts the feet of what stands on it by turns, which is no rocking.
-            let least = if line.is_some() { place.still.max(rocks) } else { place.still };
-            FeetLine::new(RockingMonitor::new(state.t, tilt).with_least(least), line)
+            let least = if tilt.line.is_some() { place.still.max(rocks) } else { place.still };
+            FeetLine::new(monitor(tilt.rocking(), least), tilt.line)
         };
-        let started =
-            self.kept.record.fates.tilts().zip(&self.layout.blocks).zip(self.fate_watch.least_swings()).map(started);
-        self.kept.record.feet_lines = started.collect();
-        self.kept.record.rocking = self.layout.rocking_monitors(state.t, &state.q);
-        self.places.look(self.layout, state, &mut self.kept.record.deflections);
+        let started = || fates.tilts().zip(&self.layout.blocks);
+        *feet_lines = started().zip(self.fate_watch.least_swings()).map(line).collect();
+        *rocking = started().map(|(tilt, place)| monitor(tilt.carrier, place.still)).collect();
+        self.look_at_deflections(state);
         let (record, values) = (&mut self.kept.record, &mut self.kept.section_values);
         self.sections.start(self.layout, state, &mut record.beams, values);
         Ok(self.write_row(state)?)
@@ -513,14 +522,12 @@ impl Observer<2> for Recorder<'_> {
         if let Some(text) = self.sections.observe(step, kept, &mut record.warnings) {
             (self.tell)(&text);
         }
-        self.places.look(self.layout, state, &mut self.kept.record.deflections);
+        self.look_at_deflections(state);
         self.kept.record.fates.observe(&self.fate_watch, self.layout, step, state);
         let Record { rocking, feet_lines, fates, .. } = &mut self.kept.record;
-        for (block, monitor) in rocking.iter_mut().enumerate() {
-            monitor.enter(state.t, self.layout.tilt(block, &state.q));
-        }
-        for (line, (tilt, slope)) in feet_lines.iter_mut().zip(fates.tilts()) {
-            line.enter(state.t, tilt, slope);
+        for ((monitor, line), tilt) in rocking.iter_mut().zip(feet_lines).zip(fates.tilts()) {
+            monitor.enter(state.t, tilt.carrier);
+            line.enter(state.t, tilt.rocking(), tilt.line);
         }
         if self.kept.schedule.takes(state.step, state.t) {
             self.write_rows(model, state)?;

@@ -2,7 +2,7 @@
 //! that a beam yields.
 
 use crate::WarningLog;
-use crate::first::exceeds;
+use crate::first;
 use crate::number::{push, push_next};
 use crate::{with_digits, with_unit};
 use serde::{Deserialize, Serialize};
@@ -122,6 +122,8 @@ pub struct BeamRecord {
     pub beam: String,
     /// The largest stress; none where the section doesn't know its modulus.
     pub largest: Option<LargestStress>,
+    /// The stress at the time told of that, Pa.
+    pub first: f64,
     /// The supports, where the scene asks for reactions.
     pub reactions: Vec<ReactionRange>,
     /// Extremes by nodes, where the scene asks for them.
@@ -235,6 +237,7 @@ impl Sections {
         let record = |(of, place): (&BeamScene, &BeamPlace)| BeamRecord {
             beam: place.name.clone(),
             largest: None,
+            first: 0.0,
             reactions: Vec::new(),
             envelope: of
                 .output
@@ -382,8 +385,9 @@ impl BeamRecord {
         }
         let peak = forces.largest_stress(beam)?;
         let found = LargestStress { stress: peak.stress, x: peak.x, t };
-        if self.largest.is_none_or(|largest| exceeds(found.stress, largest.stress)) {
-            self.largest = Some(found);
+        let largest = self.largest.get_or_insert(found);
+        if first::enter(found.stress, &mut largest.stress, &mut self.first) {
+            *largest = found;
         }
         Some(found)
     }

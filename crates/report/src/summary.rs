@@ -1,15 +1,23 @@
 //! `summary.json`: the numbers of a run.
 
+mod model;
+mod passages;
+mod records;
+
+use model::ModelSummary;
+pub(crate) use model::{BeamSummary, RemovedSummary};
+use passages::CrossingRow;
+pub(crate) use passages::{Passages, PeakRow};
+pub use records::RecordSummary;
+
 use crate::told::Told;
 use crate::verdict::{BodyVerdict, StopReason, headline};
 use crate::{BeamRecord, ImpactRow, LargestDeflection, LargestStress, ReactionRange, Record, Warning};
 use crate::{made_energy, taken_energy, unlocated};
 use serde::Serialize;
-use std::collections::BTreeSet;
-use teeter_integrator::{Ended, Peak, RockingMonitor, Signal as _, State};
-use teeter_scenario::scene::{RecordScene, Scene};
+use teeter_integrator::{Ended, RockingMonitor, State};
+use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
-use teeter_scenario::wording;
 
 /// How a run ended, as files say it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -193,63 +201,6 @@ pub struct PositiveWorkSummary {
     pub sum: f64,
 }
 
-/// A zero crossing of a block's angle against what carries it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct CrossingRow {
-    /// When, s.
-    pub t: f64,
-    /// The block.
-    pub body: String,
-}
-
-/// A peak of a block's angle against what carries it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PeakRow {
-    /// When, s.
-    pub t: f64,
-    /// The block.
-    pub body: String,
-    /// The angle, rad.
-    pub phi: f64,
-    /// Of a peak from the line between the block's feet on its beam: the line's slope then, rad.
-    #[serde(skip)]
-    pub(crate) line: Option<f64>,
-}
-
-/// Crossings and peaks of all blocks, in order of time.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Passages {
-    pub(crate) crossings: Vec<CrossingRow>,
-    pub(crate) peaks: Vec<PeakRow>,
-}
-
-impl Passages {
-    /// Those that the monitors of the blocks have found; with each come the peak that no crossing has followed yet and the slopes of the line from which
-    /// its peaks count.
-    fn of<'a>(
-        layout: &Layout,
-        monitors: impl Iterator<Item = (&'a RockingMonitor, Option<Peak>, Vec<Option<f64>>)>,
-    ) -> Self {
-        let mut all = Self::default();
-        for (block, (monitor, turned, lines)) in layout.blocks.iter().zip(monitors) {
-            let body = || block.name.clone();
-            all.crossings.extend(monitor.crossings().iter().map(|of| CrossingRow { t: of.t, body: body() }));
-            // With the one that the headline has, which no crossing has followed yet; not behind a list that is full.
-            let turned = turned.filter(|_| monitor.crossings().len() as u64 == monitor.count());
-            let row = |(k, of): (usize, &Peak)| PeakRow {
-                t: of.t,
-                body: body(),
-                phi: of.phi,
-                line: lines.get(k).copied().flatten(),
-            };
-            all.peaks.extend(monitor.peaks().iter().chain(&turned).enumerate().map(row));
-        }
-        all.crossings.sort_by(|a, b| a.t.total_cmp(&b.t));
-        all.peaks.sort_by(|a, b| a.t.total_cmp(&b.t));
-        all
-    }
-}
-
 /// Verdicts as the headline tells them: the last peak of what rocks on a beam counts from the line between its feet there, as φ/α and the table of half
 /// cycles of the page, not from the beam's undeformed axis.
 fn as_told(scene: &Scene, verdict: &[BodyVerdict], record: &Record) -> Vec<BodyVerdict> {
@@ -295,137 +246,6 @@ impl BorneSummary {
             reactions: borne.reactions.clone(),
         }
     }
-}
-
-/// A run that is shorter than a record by no more than rounding has all of it.
-const ROUNDED: f64 = 1.0 - 1e-9;
-
-/// A recorded acceleration that prescribes a component of a motion, as used: cut, corrected, scaled.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RecordSummary {
-    /// The table of the scene that names it, such as `ground.motion.x`.
-    pub motion: String,
-    /// The file, as named in the scene.
-    pub file: String,
-    /// The station as named in the file; may be empty.
-    pub station: String,
-    /// The event and other text of the file; may be empty.
-    pub description: String,
-    /// Time between two values, s.
-    pub step: f64,
-    /// Time from the first value to the last, s.
-    pub duration: f64,
-    /// Peak ground acceleration, m/s².
-    pub peak_acceleration: f64,
-    /// The same of the part that was run, where the run is shorter.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub peak_acceleration_in_run: Option<f64>,
-    /// Peak ground velocity, m/s, from rest.
-    pub peak_velocity: f64,
-    /// Peak ground displacement, m, from rest.
-    pub peak_displacement: f64,
-    /// Arias intensity π/(2g) ∫ a² dt, m/s.
-    pub arias_intensity: f64,
-    /// Time from 5 % to 95 % of it, s.
-    pub significant_duration: f64,
-}
-
-impl RecordSummary {
-    /// The numbers of a record in a run up to the time `t` (s).
-    fn up_to(t: f64, of: &RecordScene) -> Self {
-        let record = &of.record;
-        let run = (0..record.accelerations().len()).take_while(|k| record.time(*k) <= t);
-        // Between two values it is linear: at the end of the run, too.
-        let peak = || run.map(|k| record.accelerations()[k].abs()).fold(of.table().value(t).abs(), f64::max);
-        Self { peak_acceleration_in_run: (t < ROUNDED * record.duration()).then(peak), ..Self::new(of) }
-    }
-
-    /// The numbers of a record as it is used.
-    #[must_use]
-    pub fn new(of: &RecordScene) -> Self {
-        let record = &of.record;
-        Self {
-            motion: of.path.clone(),
-            file: of.file.clone(),
-            station: record.station().to_owned(),
-            description: record.description().to_owned(),
-            step: record.dt(),
-            duration: record.duration(),
-            peak_acceleration: record.peak_acceleration(),
-            peak_acceleration_in_run: None,
-            peak_velocity: record.velocity_peak().size,
-            peak_displacement: record.displacement_peak().size,
-            arias_intensity: record.arias_intensity(),
-            significant_duration: record.significant_duration(),
-        }
-    }
-}
-
-/// What was modelled and what was left out.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ModelSummary {
-    /// Names of the blocks.
-    pub blocks: Vec<String>,
-    /// The beams.
-    pub beams: Vec<BeamSummary>,
-    /// Whether there is rigid ground.
-    pub ground: bool,
-    /// Names of the contacts; one by patterns comes once.
-    pub contacts: Vec<String>,
-    /// The most contacts that there can be at once, but for those of beams with sides of blocks:
-    /// the same number as in `teeter check`.
-    pub possible_contacts: usize,
-    /// The forces on blocks and the loads on beams, with their size, which their signals multiply.
-    pub loads: Vec<String>,
-    /// Velocities of blocks and beams together.
-    pub dofs: usize,
-    /// What the model leaves out, and why.
-    pub left_out: Vec<&'static str>,
-    /// How much of the scene was asked for: `required` or `full`.
-    pub extent: &'static str,
-    /// What of the scene it does without, as nothing needs it.
-    pub removed: Vec<RemovedSummary>,
-}
-
-/// Something that the model does without.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct RemovedSummary {
-    /// What.
-    pub what: String,
-    /// Why nothing misses it.
-    pub why: String,
-    /// Whether every number is the same with it.
-    pub exact: bool,
-    /// If not, how far they are apart.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub accuracy: Option<String>,
-}
-
-/// A beam as modelled.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BeamSummary {
-    /// Its name.
-    pub name: String,
-    /// Its elements.
-    pub elements: usize,
-    /// Its degrees of freedom.
-    pub dofs: usize,
-    /// The shapes in which it moves, where these are not those of all its nodes.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub shapes: Option<ShapesSummary>,
-    /// Its theory, as in a scene.
-    pub theory: &'static str,
-    /// How its matrix is solved.
-    pub backend: &'static str,
-}
-
-/// The shapes of a beam in modes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct ShapesSummary {
-    /// Its modes, rigid motions included.
-    pub modes: usize,
-    /// Its static corrections.
-    pub corrections: usize,
 }
 
 impl Summary {
@@ -645,56 +465,6 @@ impl Summary {
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
-}
-
-impl ModelSummary {
-    fn new(scene: &Scene, layout: &Layout) -> Self {
-        let beams: Vec<BeamSummary> = layout
-            .beams
-            .iter()
-            .zip(&scene.beams)
-            .map(|(place, beam)| BeamSummary {
-                name: place.name.clone(),
-                elements: place.beam.elements(),
-                dofs: place.free_dofs(),
-                shapes: place
-                    .basis
-                    .as_ref()
-                    .map(|basis| ShapesSummary { modes: basis.modes(), corrections: basis.len() - basis.modes() }),
-                theory: wording::theory(beam),
-                backend: wording::backend(beam),
-            })
-            .collect();
-        let required = &layout.required;
-        let moving = beams.iter().enumerate().filter(|(k, _)| !required.is_at_rest(*k));
-        Self {
-            blocks: layout.blocks.iter().map(|place| place.name.clone()).collect(),
-            dofs: 3 * layout.blocks.len() + moving.map(|(_, beam)| beam.dofs).sum::<usize>(),
-            beams,
-            ground: scene.ground.is_some(),
-            contacts: names_once(layout.contact_names()),
-            possible_contacts: layout.possible_contacts,
-            loads: wording::loads(scene),
-            left_out: teeter_scenario::left_out(scene),
-            extent: required.extent.word(),
-            removed: required
-                .removed
-                .iter()
-                .map(|removed| RemovedSummary {
-                    what: removed.what.clone(),
-                    why: removed.why.clone(),
-                    exact: removed.accuracy.is_none(),
-                    accuracy: removed.accuracy.clone(),
-                })
-                .collect(),
-        }
-    }
-}
-
-/// Names without those that came before.
-fn names_once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut seen = BTreeSet::new();
-    names.filter(|name| seen.insert(*name)).map(str::to_owned).collect()
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@ mod many;
 mod sliding;
 mod stance;
 mod standing;
+mod terrain;
 mod watch;
 
 pub use body::{BodyVerdict, Fate};
@@ -35,7 +36,7 @@ use teeter_integrator::{Mismatch, Model, PhaseKind, RockingMonitor, State, StepR
 use teeter_scenario::scene::Scene;
 use teeter_scenario::simulation::Layout;
 use watch::Watched;
-pub(crate) use watch::{Watch, points_of_no_return};
+pub(crate) use watch::{Tilt, Watch, points_of_no_return};
 
 /// A block is still below this part of √(gR): then no point of it rises by more than half a millionth of R by its speed alone.
 pub(crate) const STILL: f64 = 1e-3;
@@ -63,6 +64,9 @@ const BEGAN_TO_TIP: f64 = 1e-3;
 
 /// While what is below it moves on, a block rests only if it has been still for this many times its longest pause so far.
 const PAUSES: f64 = 1.5;
+
+/// A round block rolled, in a word, if it turned by this angle as it did, rad: a hundredth of a turn.
+const ROLLED: f64 = 0.01 * std::f64::consts::TAU;
 
 /// A block rocks, in a word, if it got to this part of its critical angle.
 pub(crate) const ROCKED: f64 = 0.01;
@@ -102,9 +106,9 @@ struct Seen {
     from: f64,
     /// Its angle at the end of the last step, rad.
     angle: f64,
-    /// The same against what carries it ([`Watched::tilt`]), and the slope of the line between its feet on its beam then.
+    /// The same against what carries it.
     #[serde(skip)]
-    tilt: (f64, Option<f64>),
+    tilt: Tilt,
     /// The largest |φ|/α.
     part: Option<f64>,
     /// How far it has turned at most against what carries it, to the left and to the right, rad.
@@ -125,6 +129,8 @@ struct Seen {
     still: Option<f64>,
     /// Since when it is also still relative to the supports of the beam that carries it, or to what else does, s.
     unmoved: Option<f64>,
+    /// When what carries it last moved, or was to, s.
+    carried: Option<f64>,
     /// How long it was still at most between two motions, s; `None` before the first.
     paused: Option<f64>,
     /// Whether its mass centre has been over its beam, and since when it is past an end, s, and which.
@@ -142,6 +148,13 @@ struct Seen {
     stood: Option<f64>,
     /// How it has slid, from the start of the run.
     slides: Slides,
+    /// How far it had slid, and in all, m, when it passed the point of no return that it is past, or its column did.
+    slid_before: Option<[f64; 2]>,
+    /// By how much it has rolled on what it touches, rad; of a round one.
+    rolled: f64,
+    /// By how much it turned in the last step, rad; memory.
+    #[serde(skip)]
+    turn: f64,
     /// What holds it from below in a step so far, N·s, and its slip by that; memory.
     #[serde(skip)]
     sliding: [f64; 2],
@@ -167,6 +180,13 @@ struct KnownStance(Option<Option<Stance>>);
 impl PartialEq for KnownStance {
     fn eq(&self, _: &Self) -> bool {
         true
+    }
+}
+
+impl Seen {
+    /// Whether it is past its point of no return, or with its column past that of all of it.
+    fn is_past(&self) -> bool {
+        self.beyond.is_some() || self.column.is_some_and(|column| column.beyond.is_some())
     }
 }
 
@@ -226,18 +246,22 @@ impl Fates {
         Ok(())
     }
 
-    /// The angle of each block against what carries it at the end of the last step, rad, from which its crossings and peaks count; of one on a beam
-    /// with the slope of the line between its feet there.
-    pub(crate) fn tilts(&self) -> impl Iterator<Item = (f64, Option<f64>)> {
+    /// The angle of each block against what carries it at the end of the last step.
+    pub(crate) fn tilts(&self) -> impl Iterator<Item = Tilt> {
         self.blocks.iter().map(|seen| seen.tilt)
     }
 
     /// Takes a step in.
     pub(crate) fn observe(&mut self, watch: &Watch, layout: &Layout, step: &StepReport<'_, 2>, state: &State) {
         self.look(watch, layout, step.t_start, state);
+        for seen in &mut self.blocks {
+            let slid = [seen.slides.at(), seen.slides.in_all()];
+            seen.slid_before = if seen.is_past() { seen.slid_before.or(Some(slid)) } else { None };
+        }
         self.find_struck(watch, layout, step);
         self.slide(watch, step);
         self.touch(watch, layout, step, state.t);
+        self.roll(watch, layout, state);
         if self.stopped.is_none() {
             self.stopped = self.stop(watch, state.t).map(|reason| (state.t, reason));
         }
@@ -278,13 +302,12 @@ impl Fates {
             // Past the end of its beam nothing carries it that it could overturn on.
             let carried = seen.out.is_none() || seen.beyond.is_some();
             if let Some(mut stance) = stance.filter(|_| carried) {
-                let slope = watched.slope(&state.q);
                 let line = watch.slope(number, layout, state);
                 let (tilt, least) = (q[2] - line, 0.5 * ROCKED * (stance.left.top - stance.right.top));
                 seen.swung = seen.swung.filter(|(_, at)| (tilt - at).abs() < least).or(Some((t, tilt)));
                 let largest = stance.part(q[2], line).filter(|part| seen.part.is_none_or(|most| *part > most));
                 if largest.is_some() {
-                    (seen.part, seen.joint) = (largest, layout.tilt(number, &state.q).abs());
+                    (seen.part, seen.joint) = (largest, seen.tilt.carrier.abs());
                 }
                 let way = Way::of(q[2] - stance.flat);
                 let edge = stance.edge(way);
@@ -300,18 +323,23 @@ impl Fates {
                     let lies = edge.lies.or_else(|| watched.outline.as_ref()?.lies(edge, way));
                     stance.edge_mut(way).lies = lies;
                     seen.stance = KnownStance(Some(Some(stance)));
-                    let way_down = lies.map(|lies| way.sign() * (lies + slope - edge.top));
+                    let slope = || watched.slope(&state.q);
+                    let way_down = lies.map(|lies| way.sign() * (lies + slope() - edge.top));
                     seen.fallen |= way_down.is_some_and(|way_down| past(q[2]) >= FALLEN * way_down);
                 }
             }
-            seen.angle = q[2];
+            (seen.turn, seen.angle) = (q[2] - seen.angle, q[2]);
             let [left, right] = &mut seen.turned;
-            (*left, *right) = (left.max(seen.tilt.0), right.max(-seen.tilt.0));
+            (*left, *right) = (left.max(seen.tilt.rocking()), right.max(-seen.tilt.rocking()));
             if let Some(height) = seen.height {
                 let drop = height - watched.height(layout, number, state);
                 seen.dropped = if drop > watched.thickness { seen.dropped.or(Some(t)) } else { None };
             }
             seen.touched.rise(watched.clearance(layout, number, state));
+            let [vx, vy, _] = watched.carrier.velocity([q[0], q[1]], None, layout, state);
+            if t < watched.driven_until || vx.hypot(vy) > watched.still_speed {
+                seen.carried = Some(t);
+            }
             let is_unmoved = watched.speed_over_base(layout, number, state) <= watched.still_speed;
             seen.unmoved = if is_unmoved { seen.unmoved.or(Some(t)) } else { None };
             let speed = watched.speed(layout, number, state);
@@ -353,8 +381,7 @@ impl Fates {
         let free = || self.blocks.iter().zip(&watch.blocks).filter(|(_, watched)| !watched.driven);
         free().next()?;
         let rests = |(seen, watched): (&Seen, &Watched)| Self::rests(seen, watched, t).is_some();
-        let is_past = |seen: &Seen| seen.beyond.is_some() || seen.column.is_some_and(|column| column.beyond.is_some());
-        let down = |of: (&Seen, &Watched)| is_past(of.0) && (of.0.fallen || rests(of));
+        let down = |of: (&Seen, &Watched)| of.0.is_past() && (of.0.fallen || rests(of));
         if watch.stop.overturned && free().any(down) {
             return Some(StopReason::Overturned);
         }

@@ -83,11 +83,45 @@ fn resting_line(profile: &Profile, at: f64, width: f64) -> Option<Line> {
     ((next - slope).abs() <= 1e3 * SAME_SLOPE).then_some([at, height, next])
 }
 
-/// Height (m) at `at` and slope (rad) of the line over the ground between two places.
-fn line_over(profile: &Profile, at: f64, [left, right]: [f64; 2]) -> [f64; 2] {
+/// The slopes (rad), the least and the largest, with which a base between two places, x in m, lies on the ground: the same but where
+/// its middle half is over a crest, about which it turns without being lifted. `None` where the second isn't to the right of the first.
+#[must_use]
+pub fn slopes_of_base(profile: &Profile, [left, right]: [f64; 2]) -> Option<[f64; 2]> {
+    let quarter = 0.25 * (right - left);
+    let middle = |two: &&[Vector2<f64>]| two[1].x > left + quarter && two[0].x < right - quarter;
+    let hull = hull_over(profile, [left, right]);
+    let slopes = hull.windows(2).filter(middle).map(slope_between).map(|slope| [slope; 2]);
+    slopes.reduce(|[least, most], [slope, _]| [least.min(slope), most.max(slope)])
+}
+
+/// How far a place over the ground is along its surface, to the right of the first point of the profile, m.
+#[must_use]
+pub fn along(profile: &Profile, at: [f64; 2]) -> f64 {
+    let at = Vector2::from(at);
+    let mut points = profile.points();
+    let Some(mut from) = points.next() else { return at.x };
+    let mut passed = 0.0;
+    if at.x > from.x {
+        for to in points {
+            let piece = to - from;
+            if at.x < to.x {
+                return passed + (at - from).dot(&piece.normalize());
+            }
+            passed += piece.norm();
+            from = to;
+        }
+    }
+    passed + at.x - from.x
+}
+
+fn slope_between(two: &[Vector2<f64>]) -> f64 {
+    (two[1].y - two[0].y).atan2(two[1].x - two[0].x)
+}
+
+/// The upper side of the convex hull of the ground between two places, from left to right.
+fn hull_over(profile: &Profile, [left, right]: [f64; 2]) -> Vec<Vector2<f64>> {
     let end = |x: f64| Vector2::new(x, profile.height(x));
     let within = profile.points().filter(|point| point.x > left && point.x < right);
-    // The upper side of the convex hull, from left to right.
     let mut hull: Vec<Vector2<f64>> = Vec::new();
     for point in std::iter::once(end(left)).chain(within).chain(std::iter::once(end(right))) {
         while let [.., a, b] = hull.as_slice()
@@ -97,17 +131,22 @@ fn line_over(profile: &Profile, at: f64, [left, right]: [f64; 2]) -> [f64; 2] {
         }
         hull.push(point);
     }
-    let slope = |two: &[Vector2<f64>]| (two[1].y - two[0].y).atan2(two[1].x - two[0].x);
+    hull
+}
+
+/// Height (m) at `at` and slope (rad) of the line over the ground between two places.
+fn line_over(profile: &Profile, at: f64, ends: [f64; 2]) -> [f64; 2] {
+    let hull = hull_over(profile, ends);
     let over = |two: &&[Vector2<f64>]| two[0].x <= at && at <= two[1].x;
     // Two edges meet at `at` where the ground has a crest there.
     let edges: Vec<&[Vector2<f64>]> = hull.windows(2).filter(over).collect();
     match edges.as_slice() {
         [first, .., last] => {
-            let (steepest, least) = (slope(first), slope(last));
+            let (steepest, least) = (slope_between(first), slope_between(last));
             [first[1].y, 0.0_f64.clamp(least.min(steepest), steepest.max(least))]
         }
         [edge] => {
-            let slope = slope(edge);
+            let slope = slope_between(edge);
             [edge[0].y + (at - edge[0].x) * slope.tan(), slope]
         }
         [] => [profile.height(at), 0.0],

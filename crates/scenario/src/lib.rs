@@ -40,7 +40,7 @@ pub mod deflection;
 mod driven;
 mod equilibrium_key;
 mod flexibility;
-mod ground_profile;
+pub mod ground_profile;
 mod held;
 pub mod keys;
 mod layout;

@@ -46,7 +46,8 @@ pub struct BodyVerdict {
     pub rests_from: Option<f64>,
     /// On which side it rests, of one that does and doesn't lean on something.
     pub lies_on: Option<Side>,
-    /// How far it slid from the start to the end, m, to the right positive: its points, while they press on what holds it from below.
+    /// How far it slid from the start to the end, or to when it overturned, m, to the right positive: its points, while they press on what holds it from
+    /// below.
     pub slid: Option<f64>,
     /// The same, to and fro, in all.
     pub slid_in_all: Option<f64>,
@@ -58,6 +59,9 @@ pub struct BodyVerdict {
     /// Where it is along what carries it, m, of one that stood from the start and got there by hops and flights, too.
     #[serde(skip)]
     pub(crate) elsewhere: Option<f64>,
+    /// By how much it has rolled on what it touches, rad, counter-clockwise positive; of a round one.
+    #[serde(skip)]
+    pub(crate) rolled: Option<f64>,
     /// The farthest that it slid, of one that slid back from there, m; to the right positive. Of one that has then
     /// slid farther past its start, where it turned.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -1,10 +1,11 @@
 //! What carries a block: how it moves under the block, where along it the block is, whether the block is still over it.
 
 use super::Way;
+use super::terrain::Terrain;
 use std::ops::Range;
 use teeter_integrator::State;
 use teeter_scenario::scene::{MotionScene, Placement, Scene, SupportingBody};
-use teeter_scenario::simulation::Layout;
+use teeter_scenario::simulation::{BeamPlace, Layout};
 
 /// Beams whose heights differ by less than this part of a block's size continue each other.
 const LEVEL: f64 = 0.01;
@@ -16,8 +17,12 @@ pub(super) struct Carrier {
     on: On,
     /// What that stands on, and so on down to what no block carries or whose motion is prescribed: what moves under the block.
     root: On,
-    /// The slope of fixed ground, or of a profile under the block relative to moving ground, rad.
+    /// The slope of fixed ground, or of a profile under the block at the start relative to moving ground, rad.
     incline: f64,
+    /// The slope of fixed ground that carries the block, directly or by others, as `incline` is of what carries it directly.
+    foot: f64,
+    /// The ground, if it carries the block, directly or by others, and has a profile.
+    terrain: Option<Terrain>,
     /// Other beams that continue the one it stands on, by their numbers, and where their left ends are while their supports don't move, m.
     beside: Vec<(usize, [f64; 2])>,
     /// The slope of the scene's ground while it doesn't move, rad; `None` without ground.
@@ -106,7 +111,7 @@ impl Carrier {
             // In a crowd, or alone: moving ground moves all.
             None => layout.ground.clone().map_or(On::Fixed, On::Ground),
         };
-        let mut root = support(number);
+        let (mut root, mut lowest) = (support(number), number);
         let free = |of: Option<SupportingBody>| match of {
             Some(SupportingBody::Block(below)) if !scene.blocks[below].motion.is_given() => Some(below),
             _ => None,
@@ -114,32 +119,38 @@ impl Carrier {
         // At most as many storeys as there are blocks.
         for _ in 0..scene.blocks.len() {
             let Some(below) = free(root) else { break };
-            root = support(below);
+            (root, lowest) = (support(below), below);
         }
         if free(root).is_some() {
             root = None;
         }
         // The tilt is measured from what carries the block: the rest of the angle is its slope.
-        let incline = if matches!(support(number), Some(SupportingBody::Ground)) {
-            let own = layout.blocks[number].range.end;
+        let on_ground = matches!(root, Some(SupportingBody::Ground));
+        let foot = if on_ground {
+            let own = layout.blocks[lowest].range.end;
             let q = vec![0.0; layout.ground.as_ref().map_or(own, |ground| own.max(ground.end))];
-            -layout.tilt(number, &q)
+            -layout.tilt(lowest, &q)
         } else {
             0.0
         };
+        let incline = if lowest == number { foot } else { 0.0 };
         let beside = match support(number) {
             Some(SupportingBody::Beam(beam)) => continued(scene, number, beam),
             _ => Vec::new(),
         };
         let ground = scene.ground.as_ref().map(|ground| ground.incline);
-        Self { on: of(support(number)), root: of(root), incline, beside, ground }
+        let terrain = if on_ground { Terrain::of(scene, layout, lowest) } else { None };
+        Self { on: of(support(number)), root: of(root), incline, foot, terrain, beside, ground }
     }
 
-    /// The slope of the ground that carries the block, rad; 0 of other carriers.
+    /// The slope of the ground that carries the block, directly or by others, where it or the lowest of these is, rad; 0 of other carriers.
     pub(super) fn slope(&self, q: &[f64]) -> f64 {
-        match &self.on {
-            On::Ground(range) => q[range.start + 2] + self.incline,
-            On::Fixed => self.incline,
+        if let Some(slope) = self.terrain.as_ref().and_then(|terrain| terrain.slope(q)) {
+            return slope;
+        }
+        match &self.root {
+            On::Ground(range) => q[range.start + 2] + self.foot,
+            On::Fixed => self.foot,
             On::Beam(..) | On::Block(_) => 0.0,
         }
     }
@@ -162,11 +173,7 @@ impl Carrier {
     pub(super) fn chord(&self, x: f64, half: f64, layout: &Layout, q: &[f64]) -> Option<f64> {
         let On::Beam(beam, _) = &self.on else { return None };
         let place = &layout.beams[*beam];
-        let height = |x: f64| {
-            let on = x.clamp(0.0, place.beam.spec().span);
-            let bent = place.deflection(&place.beam.shape_clamped(on), &q[place.range.clone()]);
-            bent.w + bent.slope * (x - on)
-        };
+        let height = |x: f64| bent(place, x, q);
         Some((height(x + half) - height(x - half)).atan2(2.0 * half))
     }
 
@@ -203,16 +210,13 @@ impl Carrier {
                 let [x, y] = beam_origin(*beam, *position, layout, &state.q);
                 let [vx, vy] =
                     place.supports.clone().map_or([0.0; 2], |range| [state.v[range.start], state.v[range.start + 1]]);
-                let bent = |at: f64, values: &[f64]| {
-                    place.deflection(&place.beam.shape_clamped(at - x), &values[place.range.clone()])
-                };
                 let Some([left, right]) = feet else {
-                    let rate = bent(at[0], &state.v);
-                    return [vx, vy + rate.w, rate.slope];
+                    let rate = place.deflection(&place.beam.shape_clamped(at[0] - x), &state.v[place.range.clone()]);
+                    return [vx, vy + bent(place, at[0] - x, &state.v), rate.slope];
                 };
-                let [from, to] = [left, right].map(|foot| bent(foot, &state.v).w);
+                let [from, to] = [left, right].map(|foot| bent(place, foot - x, &state.v));
                 let spin = (to - from) / (right - left);
-                let height = at[1] - y - bent(at[0], &state.q).w;
+                let height = at[1] - y - bent(place, at[0] - x, &state.q);
                 [vx - spin * height, vy + from + spin * (at[0] - left), spin]
             }
             On::Fixed => [0.0; 3],
@@ -230,8 +234,21 @@ impl Carrier {
         }
     }
 
-    /// Where a point is along what carries the block, m.
+    /// The ground, if it has a profile and the block stands on it.
+    fn own_terrain(&self) -> Option<&Terrain> {
+        self.terrain.as_ref().filter(|_| !matches!(self.on, On::Block(_)))
+    }
+
+    /// Whether the block stands on ground with a profile.
+    pub(super) fn is_terrain(&self) -> bool {
+        self.own_terrain().is_some()
+    }
+
+    /// Where a point is along what carries the block, m; on a profile along its surface.
     pub(super) fn along(&self, at: [f64; 2], layout: &Layout, q: &[f64]) -> f64 {
+        if let Some(terrain) = self.own_terrain() {
+            return terrain.along(at, q);
+        }
         let (origin, slope) = match &self.on {
             On::Ground(range) | On::Block(range) => ([q[range.start], q[range.start + 1]], q[range.start + 2]),
             On::Beam(beam, position) => (beam_origin(*beam, *position, layout, q), 0.0),
@@ -297,7 +314,7 @@ impl Carrier {
         let On::Beam(beam, position) = &self.root else { return height };
         let place = &layout.beams[*beam];
         let origin = beam_origin(*beam, *position, layout, q)[0];
-        let bent = |x: f64| place.deflection(&place.beam.shape_clamped(x - origin), &q[place.range.clone()]).w;
+        let bent = |x: f64| bent(place, x - origin, q);
         height
             - match feet.map(|[left, right]| 0.5 * (bent(left) + bent(right))) {
                 Some(feet) if has_face => feet.max(bent(at[0])),
@@ -305,6 +322,13 @@ impl Carrier {
                 None => bent(at[0]),
             }
     }
+}
+
+/// The deflection of a beam at x (m, along it) for coordinates of the model, or its rate for velocities: past an end the beam goes on straight.
+fn bent(place: &BeamPlace, x: f64, values: &[f64]) -> f64 {
+    let on = x.clamp(0.0, place.beam.spec().span);
+    let bent = place.deflection(&place.beam.shape_clamped(on), &values[place.range.clone()]);
+    bent.w + bent.slope * (x - on)
 }
 
 /// How high a point is over the origin of the ground, across its slope (rad, while it doesn't move), m.
@@ -361,4 +385,35 @@ fn continued(scene: &Scene, block: usize, beam: usize) -> Vec<(usize, [f64; 2])>
 /// The left end of a beam's axis, which moves with its supports, m.
 pub(super) fn beam_origin(beam: usize, [x, y]: [f64; 2], layout: &Layout, q: &[f64]) -> [f64; 2] {
     layout.beams[beam].supports.clone().map_or([x, y], |range| [x + q[range.start], y + q[range.start + 1]])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use teeter_scenario::simulation::Simulation;
+
+    /// A block over the right end of a cantilever, whose right foot is past it.
+    #[test]
+    fn past_an_end_of_a_beam_velocity_is_the_rate_of_place() {
+        let text = "[time]\nend = '1 s'\nstep = '1 ms'\n[material.a]\ndensity = '2700 kg/m^3'\nyoungs_modulus = '69 GPa'\n[beam.t]\n\
+            material = 'a'\nspan = '50 cm'\nwidth = '3 cm'\nthickness = '5 mm'\nelements = 4\nsupports = ['clamped', 'free']\n[block.b]\n\
+            material = 'a'\nwidth = '6 cm'\nheight = '9 cm'\ndepth = '3 cm'\non = 't'\nat = '49 cm'\n[contact.c]\nbetween = ['b', 't']\n\
+            friction = 0.5\npoints = 'all'\n";
+        let scene = teeter_scenario::load(text.as_bytes(), "f", "f", &[]).unwrap().scene;
+        let Simulation { layout, mut state, .. } = Simulation::new(&scene).unwrap();
+        let carrier = Carrier::of(&scene, &layout, 0);
+        for (k, v) in state.v[layout.beams[0].range.clone()].iter_mut().enumerate() {
+            *v = 1e-3 * (1.0 + k as f64).sin();
+        }
+        let (h, feet) = (1e-3, [0.46, 0.52]);
+        let moved = |by: f64| -> Vec<f64> { state.q.iter().zip(&state.v).map(|(q, v)| q + by * v).collect() };
+        let rate = |of: &dyn Fn(&[f64]) -> f64| (of(&moved(h)) - of(&moved(-h))) / (2.0 * h);
+        let [_, _, spin] = carrier.velocity([0.49, 0.045], Some(feet), &layout, &state);
+        let chord = rate(&|q| carrier.chord(0.49, 0.03, &layout, q).unwrap());
+        assert!((spin / chord - 1.0).abs() < 1e-6 && spin.abs() > 1e-3, "{spin} {chord}");
+        // A disc past the end, over the straight line that goes on from there.
+        let [_, vy, _] = carrier.velocity([0.52, 0.045], None, &layout, &state);
+        let height = rate(&|q| -carrier.clearance([0.52, 0.045], None, false, &layout, q));
+        assert!((vy / height - 1.0).abs() < 1e-6, "{vy} {height}");
+    }
 }

@@ -77,11 +77,13 @@ impl Column {
 /// The block that stands on each, if it is the only one.
 pub(super) fn above(on: impl Iterator<Item = Option<SupportingBody>>) -> Vec<Option<usize>> {
     let on: Vec<_> = on.collect();
-    let single = |below: usize| {
-        let mut all = on.iter().enumerate().filter(|(_, on)| **on == Some(SupportingBody::Block(below)));
-        all.next().filter(|_| all.next().is_none()).map(|(above, _)| above)
-    };
-    (0..on.len()).map(single).collect()
+    let mut above = vec![(0_usize, None); on.len()];
+    for (number, on) in on.iter().enumerate() {
+        if let Some(SupportingBody::Block(below)) = on {
+            above[*below] = (above[*below].0 + 1, Some(number));
+        }
+    }
+    above.into_iter().map(|(count, last)| last.filter(|_| count == 1)).collect()
 }
 
 impl Fates {
@@ -105,7 +107,8 @@ impl Fates {
             self.look_at_leans(watch, layout, (before, lowest), state);
             let mut next = Some(lowest);
             while let Some(root) = next {
-                let [group, now] = [AsOne::SoFar, AsOne::Now].map(|when| self.group(watch, root, when));
+                let [group, now] =
+                    [AsOne::SoFar, AsOne::Now].map(|when| self.group(watch, layout, root, (when, state)));
                 next = watch.above[group[group.len() - 1]];
                 self.enter_column(watch, layout, (before, &group), (AsOne::SoFar, state));
                 if now.len() > group.len() {
@@ -121,16 +124,25 @@ impl Fates {
         if watch.above[root].is_none() {
             return;
         }
-        let stack: Vec<usize> = std::iter::successors(Some(root), |below| watch.above[*below]).collect();
-        for top in 1..stack.len() {
-            self.look_at_lean(watch, layout, (before, &stack[..=top]), state);
+        let mut part = Weight::default();
+        for top in std::iter::successors(Some(root), |below| watch.above[*below]) {
+            part.add(&watch.blocks[top], layout, top, state);
+            if top != root {
+                self.look_at_lean(watch, layout, before, (root, top, part), state);
+            }
         }
     }
 
-    fn look_at_lean(&mut self, watch: &Watch, layout: &Layout, (before, group): (f64, &[usize]), state: &State) {
-        let (root, top) = (group[0], group[group.len() - 1]);
+    fn look_at_lean(
+        &mut self,
+        watch: &Watch,
+        layout: &Layout,
+        before: f64,
+        (root, top, part): (usize, usize, Weight),
+        state: &State,
+    ) {
         let lean = &mut self.blocks[top].lean;
-        let Some([left, right]) = edges(&watch.blocks, layout, state, group, root) else { return };
+        let Some([left, right]) = part.edges(&watch.blocks[root], layout, root, state) else { return };
         let level = watch.blocks[root].outline.as_ref().map_or(0.0, |of| of.level());
         let angle = state.q[layout.blocks[root].range.start + 2];
         let past = [(angle - left - level, Way::Left), (right + level - angle, Way::Right)];
@@ -144,19 +156,33 @@ impl Fates {
     }
 
     /// The blocks that turn as one with the lowest of them, that first.
-    fn group(&self, watch: &Watch, root: usize, when: AsOne) -> Vec<usize> {
-        let above = |below: &usize| watch.above[*below].filter(|number| self.is_as_one(watch, *number, root, when));
+    fn group(&self, watch: &Watch, layout: &Layout, root: usize, (when, state): (AsOne, &State)) -> Vec<usize> {
+        let is_as_one = |number: &usize| self.is_as_one(watch, layout, [*number, root], (when, state));
+        let above = |below: &usize| watch.above[*below].filter(is_as_one);
         std::iter::successors(Some(root), above).collect()
     }
 
     /// Whether a block only turns with the one below it, as seen from the lowest of them, and stays in its place.
-    fn is_as_one(&self, watch: &Watch, number: usize, root: usize, when: AsOne) -> bool {
+    fn is_as_one(
+        &self,
+        watch: &Watch,
+        layout: &Layout,
+        [number, root]: [usize; 2],
+        (when, state): (AsOne, &State),
+    ) -> bool {
         let turn = |number: usize| match when {
             AsOne::SoFar => self.blocks[number].turned.into_iter().fold(0.0, f64::max),
-            AsOne::Now => self.blocks[number].tilt.0.abs(),
+            AsOne::Now => self.blocks[number].tilt.rocking().abs(),
         };
-        let stays = self.blocks[number].slides.most() < SLID * watch.blocks[number].base();
-        !watch.blocks[root].driven && turn(number) <= AS_ONE * turn(root) && stays
+        let (seen, watched) = (&self.blocks[number], &watch.blocks[number]);
+        let least = SLID * watched.base();
+        // Hops and flights take it aside, too.
+        let is_there = || {
+            let moved = seen.stood.zip(watched.place(layout, number, state)).map(|(from, to)| to - from);
+            moved.is_none_or(|moved| moved.abs() < least)
+        };
+        let together = !watch.blocks[root].driven && turn(number) <= AS_ONE * turn(root);
+        together && seen.slides.most() < least && is_there()
     }
 
     /// Takes in blocks that turn as one, the lowest first; those that do so only now if they are past their point of no return.
@@ -171,7 +197,8 @@ impl Fates {
         let angle = |number: usize| state.q[layout.blocks[number].range.start + 2];
         let (blocks, level) = (&watch.blocks, watch.blocks[root].outline.as_ref().map_or(0.0, |of| of.level()));
         let edges = edges(blocks, layout, state, group, root).filter(|[left, right]| {
-            let room = |edge: f64| edge - blocks[root].slope(&state.q);
+            let slope = blocks[root].slope(&state.q);
+            let room = |edge: f64| edge - slope;
             let [to_left, to_right] = self.blocks[root].turned;
             let (left, right) = (room(*left), -room(*right));
             group.len() > 1 && left > 0.0 && right > 0.0 && (to_left / left).max(to_right / right) >= ROCKED
@@ -328,10 +355,10 @@ pub(super) fn find(
     }
 }
 
-/// Whether a block never slid along what carries it by as much as is told.
+/// Whether a block never slid along what carries it by as much as is told, and no hop took it aside by that.
 fn keeps_its_place(of: &Watched, verdict: &BodyVerdict) -> bool {
-    let base = of.feet.map_or(0.0, |[left, right]| right[0] - left[0]);
-    verdict.farthest.is_none() && verdict.slid.is_some_and(|slid| slid.abs() < SLID * base)
+    let is_less = |way: f64| way.abs() < SLID * of.base();
+    verdict.farthest.is_none() && verdict.slid.is_some_and(is_less) && verdict.displaced.is_none_or(is_less)
 }
 
 /// The angles by which blocks turn about the left and the right foot of the lowest until their common mass centre is over it, rad.
@@ -348,13 +375,91 @@ fn critical_angles(
 
 /// The angles of the lowest of some blocks at which their common mass centre is over its left and its right foot, against the level of gravity, rad.
 fn edges(watched: &[Watched], layout: &Layout, state: &State, group: &[usize], root: usize) -> Option<[f64; 2]> {
-    let place = |number: usize| &state.q[layout.blocks[number].range.clone()];
-    let mass: f64 = group.iter().map(|number| watched[*number].mass).sum();
-    let centre =
-        [0, 1].map(|k| group.iter().map(|number| watched[*number].mass * place(*number)[k]).sum::<f64>() / mass);
-    let (own, feet) = (place(root), watched[root].feet?);
-    let (sin, cos) = own[2].sin_cos();
-    let [dx, dy] = [centre[0] - own[0], centre[1] - own[1]];
-    let [x, y] = [cos * dx + sin * dy, cos * dy - sin * dx];
-    Some(feet.map(|foot| (x - foot[0]).atan2(y - foot[1])))
+    let mut all = Weight::default();
+    group.iter().for_each(|number| all.add(&watched[*number], layout, *number, state));
+    all.edges(&watched[root], layout, root, state)
+}
+
+/// Some blocks together: their mass, kg, and its moment about the origin, kg m.
+#[derive(Clone, Copy, Debug, Default)]
+struct Weight {
+    mass: f64,
+    moment: [f64; 2],
+}
+
+impl Weight {
+    fn add(&mut self, watched: &Watched, layout: &Layout, number: usize, state: &State) {
+        let at = &state.q[layout.blocks[number].range.clone()];
+        self.mass += watched.mass;
+        self.moment = [0, 1].map(|k| self.moment[k] + watched.mass * at[k]);
+    }
+
+    /// The [`edges`] of the blocks, of which this is the lowest.
+    fn edges(&self, lowest: &Watched, layout: &Layout, number: usize, state: &State) -> Option<[f64; 2]> {
+        let (own, feet) = (&state.q[layout.blocks[number].range.clone()], lowest.feet?);
+        let (sin, cos) = own[2].sin_cos();
+        let [dx, dy] = [0, 1].map(|k| self.moment[k] / self.mass - own[k]);
+        let [x, y] = [cos * dx + sin * dy, cos * dy - sin * dx];
+        Some(feet.map(|foot| (x - foot[0]).atan2(y - foot[1])))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use teeter_scenario::simulation::Simulation;
+
+    /// Three stones on each other, at the start of a run, with what is known of them then.
+    fn stack() -> (Scene, Layout, State, Fates) {
+        let text = "[time]\nend = '1 s'\nstep = '1 ms'\n[ground]\n[block.b]\ndensity = '2400 kg/m^3'\nwidth = '20 cm'\nheight = '30 cm'\n\
+            depth = '10 cm'\non = 'ground'\nat = '0 m'\nrepeat = { count = 3, stacked = true }\n[contact.c]\nbetween = ['*', 'ground']\n\
+            friction = 0.5\n[contact.d]\nbetween = ['*', '*']\nfriction = 0.5\n";
+        let scene = teeter_scenario::load(text.as_bytes(), "f", "f", &[]).unwrap().scene;
+        let Simulation { layout, state, model, .. } = Simulation::new(&scene).unwrap();
+        let mut fates = Fates::default();
+        fates.start(&Watch::of(&scene, &layout), &layout, &model, &state).unwrap();
+        (scene, layout, state, fates)
+    }
+
+    #[test]
+    fn what_hopped_aside_turns_with_its_column_no_more() {
+        let (scene, layout, mut state, mut fates) = stack();
+        let watch = Watch::of(&scene, &layout);
+        fates.blocks[0].turned = [0.05, 0.0];
+        assert_eq!(fates.group(&watch, &layout, 0, (AsOne::SoFar, &state)), [0, 1, 2]);
+        state.q[layout.blocks[2].range.start] += 0.02;
+        assert_eq!(fates.group(&watch, &layout, 0, (AsOne::SoFar, &state)), [0, 1]);
+    }
+
+    #[test]
+    fn what_slid_or_hopped_by_a_hundredth_of_its_base_kept_no_place() {
+        let (scene, layout, state, fates) = stack();
+        let mut watch = Watch::of(&scene, &layout);
+        let [_, _, mut of] = fates.verdict(&scene, &layout, &state, &[]).try_into().unwrap();
+        for (slid, displaced, keeps) in
+            [(0.001, 0.001, true), (-0.003, 0.0, false), (0.001, 0.02, false), (0.0, -0.003, false)]
+        {
+            (of.slid, of.displaced) = (Some(slid), Some(displaced));
+            assert_eq!(keeps_its_place(&watch.blocks[2], &of), keeps, "{slid} {displaced}");
+        }
+        // Of what has no base nothing is told to have slid, here as elsewhere.
+        watch.blocks[2].feet = None;
+        assert!(keeps_its_place(&watch.blocks[2], &of));
+    }
+
+    /// The weight of a part of a stack, one block after the other, is that of all of them at once.
+    #[test]
+    fn parts_of_a_stack_lean_as_their_blocks_together() {
+        let (scene, layout, mut state, mut fates) = stack();
+        let watch = Watch::of(&scene, &layout);
+        for (number, by) in [(1, 0.03), (2, 0.09)] {
+            state.q[layout.blocks[number].range.start] += by;
+        }
+        fates.look_at_leans(&watch, &layout, (0.0, 0), &state);
+        // To the right by 3 cm, and by 4 cm, the mean of 0, 3 and 9 cm; 45 cm and 30 cm high.
+        for (top, [x, y]) in [(1, [0.015, 0.3]), (2, [0.04, 0.45])] {
+            let past = fates.blocks[top].lean.unwrap().past;
+            assert!((past + (0.1_f64 - x).atan2(y)).abs() < 1e-12, "{top}: {past}");
+        }
+    }
 }

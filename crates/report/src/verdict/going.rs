@@ -180,6 +180,26 @@ impl Fates {
     }
 }
 
+impl Fates {
+    /// Takes in how far round blocks rolled in a step, after what pressed on them.
+    pub(super) fn roll(&mut self, watch: &Watch, layout: &Layout, state: &State) {
+        for (number, (seen, watched)) in self.blocks.iter_mut().zip(&watch.blocks).enumerate() {
+            let touches = || seen.touched.last == Some(state.t);
+            if watched.is_round && touches() && rolls(watched, watched.velocity(layout, number, state)) {
+                seen.rolled += seen.turn;
+            }
+        }
+    }
+}
+
+/// Whether a round block with this velocity and spin relative to what it touches rolls: the point that touches moves at less than half the centre's
+/// speed. What turns backwards, or on the spot, slides. On walls either sense may be right.
+fn rolls(watched: &Watched, [vx, vy, spin]: [f64; 3]) -> bool {
+    let speed = vx.hypot(vy);
+    let along = if vx.abs() > vy.abs() { vx.signum() } else { -spin.signum() };
+    (speed * along + watched.reach * spin).abs() <= 0.5 * speed
+}
+
 impl Touched {
     /// Whether it ever touched something.
     pub(super) fn any(&self) -> bool {
@@ -236,12 +256,7 @@ impl Seen {
         if !watched.is_round {
             return None;
         }
-        // The point that touches moves at less than half the centre's speed: what turns backwards, or on the spot, slides. On walls
-        // either sense may be right.
-        let speed = vx.hypot(vy);
-        let along = if vx.abs() > vy.abs() { vx.signum() } else { -spin.signum() };
-        let foot = speed * along + watched.reach * spin;
-        Some(if foot.abs() <= 0.5 * speed { Going::Rolls } else { Going::Slides })
+        Some(if rolls(watched, [vx, vy, spin]) { Going::Rolls } else { Going::Slides })
     }
 
     /// Whether it is in the air after a landing, or was so a short time ago, higher than what rocks hops. After a single hop it rocks as soon as it

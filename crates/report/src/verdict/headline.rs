@@ -7,7 +7,7 @@ use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
 use teeter_integrator::State;
 use teeter_scenario::readable::{like, with_unit};
-use teeter_scenario::scene::Scene;
+use teeter_scenario::scene::{BlockScene, Scene};
 
 /// Blocks up to this many are told one by one.
 const FEW: usize = 2;
@@ -46,7 +46,11 @@ pub(crate) fn headline(
 /// A part of the yield strength in percent. With blocks it is the stress of impacts, which depends on step and elements: `about`.
 pub(crate) fn percent(part: f64, verdict: &[BodyVerdict]) -> String {
     let (digits, cap, about) = if verdict.is_empty() { (3, 99.9, "") } else { (2, 99.0, "about ") };
-    let percent = if part < 1.0 { (100.0 * part).min(cap) } else { 100.0 * part };
+    // Which side of 100 % it is on isn't rounded away.
+    let (percent, digits) = if part < 1.0 { ((100.0 * part).min(cap), digits) } else { (100.0 * part, 3) };
+    if percent > 100.0 && percent < 100.5 {
+        return "over 100 %".to_owned();
+    }
     format!("{about}{} %", teeter_scenario::readable::shortest(percent, digits))
 }
 
@@ -124,6 +128,10 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     // What tumbles slides meanwhile, and after that.
     let then = if of.what == Fate::Slid && of.rests_from.is_some() { "" } else { "then " };
     let tumbled = of.tumbled.map(|turn| format!("tumbled by {}, {then}", turns(turn.abs())));
+    let rolled = of
+        .rolled
+        .filter(|_| of.going != Some(Going::Rolls))
+        .map(|turn| format!("rolled {}, {then}", rolled(scene, of, turn)));
     let moving = if of.is_carried { moving_base(scene, &[of]) } else { "" };
     // Where nothing is said, it rests on its base.
     let side = side_below(of).filter(|_| of.lies_on != Some(Side::Base)).unwrap_or_default();
@@ -225,14 +233,35 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             }
             Some(going) => {
                 let on = of.on_what_moves.map_or_else(String::new, |what| format!(", on {what} that moves"));
+                let so_far = of.rolled.filter(|_| going == Going::Rolls);
+                let so_far =
+                    so_far.map_or_else(String::new, |turn| format!(", {} so far", self::rolled(scene, of, turn)));
                 let rocked = of.stopped_rocking;
                 let rocked = rocked.map_or_else(String::new, |t| format!("stopped rocking at {}, ", time(t)));
-                beside(format!("{rocked}is {}{on}", going.word()))
+                beside(format!("{rocked}is {}{on}{so_far}", going.word()))
             }
             None => beside("still moves".to_owned()),
         },
     };
-    format!("{}{fate}", tumbled.unwrap_or_default())
+    format!("{}{fate}{}", tumbled.or(rolled).unwrap_or_default(), hopped(scene, of))
+}
+
+/// By how much a round block rolled, in words after "rolled".
+fn rolled(scene: &Scene, of: &BodyVerdict, turn: f64) -> String {
+    let radius = scene.blocks.iter().find(|block| block.name == of.body).map_or(0.0, BlockScene::radius);
+    let (way, far) = (direction(scene, -turn).way, with_unit(radius * turn.abs(), "m"));
+    format!("by {far} {way} ({})", turns(turn.abs()))
+}
+
+/// Where a block is that doesn't slide, in words, if that is further from its start than its base is long: hops and flights took it there.
+fn hopped(scene: &Scene, of: &BodyVerdict) -> String {
+    let block = scene.blocks.iter().find(|block| block.name == of.body);
+    let told =
+        matches!(of.what, Fate::Rests | Fate::Rocks | Fate::Moves) && !of.has_slid && of.going != Some(Going::Bounces);
+    let at = of.elsewhere.filter(|at| told && block.is_some_and(|block| at.abs() > block.base()));
+    at.map_or_else(String::new, |at| {
+        format!(", {} {} its start by hops and flights", with_unit(at.abs(), "m"), direction(scene, at).side)
+    })
 }
 
 /// On what blocks stand that have stopped sliding, in words, if the same moves under all of them.
@@ -266,8 +295,8 @@ fn direction(scene: &Scene, slid: f64) -> Direction {
     let [across, down] = [scene.gravity[0], 0.0 - scene.gravity[1]];
     let slope = ground.map_or(0.0, |ground| ground.incline - across.atan2(down));
     let (way, side) = match (slope.abs() >= STEEP, slid < 0.0) {
-        (true, _) if slope * slid > 0.0 => ("up the slope", "above"),
-        (true, _) => ("down the slope", "below"),
+        (true, _) if slope * slid > 0.0 => ("up the slope", "up the slope from"),
+        (true, _) => ("down the slope", "down the slope from"),
         (false, true) => ("to the left", "left of"),
         (false, false) => ("to the right", "right of"),
     };
@@ -308,7 +337,14 @@ fn side_below(of: &BodyVerdict) -> Option<String> {
 /// How far to the left and to the right of its start a block has been (m), in words, as far as that is told.
 fn up_to(scene: &Scene, of: &BodyVerdict, reached: [f64; 2]) -> String {
     let far = reached.iter().fold(0.0, |far: f64, way| far.max(way.abs()));
-    let told = |way: f64| format!("{} {}", like(way.abs(), far, "m"), direction(scene, way).side);
+    let by = |way: f64| like(way.abs(), far, "m");
+    if of.elsewhere.is_some() {
+        // Hops and flights took it elsewhere: these ways are not from its start.
+        let told = |way: f64| format!("{} {}", by(way), direction(scene, way).way);
+        let ways: Vec<String> = reached.into_iter().filter(|way| is_told(scene, of, *way)).map(told).collect();
+        return if ways.is_empty() { "where it stands".to_owned() } else { format!("by up to {}", ways.join(" and ")) };
+    }
+    let told = |way: f64| format!("{} {}", by(way), direction(scene, way).side);
     match reached.map(|way| is_told(scene, of, way).then(|| told(way))) {
         [Some(left), Some(right)] => format!("up to {left} and {right} its start"),
         [Some(way), None] | [None, Some(way)] => format!("up to {way} its start"),
@@ -323,9 +359,7 @@ fn beside_slid(scene: &Scene, of: &BodyVerdict) -> String {
     let told = of.farthest.map_or(slid.abs(), |farthest| farthest.abs() + (slid - farthest).abs());
     let in_all = of.slid_in_all.filter(|in_all| *in_all > MORE * told && is_told(scene, of, in_all - told));
     let in_all = in_all.map(|in_all| format!("{} in all", with_unit(in_all, "m")));
-    // Along a profile of several slopes the way along the surface isn't the way that its start's slope measures.
-    let is_straight = scene.ground.as_ref().is_none_or(|ground| ground.profile.is_none());
-    let place = of.elsewhere.filter(|_| is_straight).map(|at| {
+    let place = of.elsewhere.map(|at| {
         let at_start = !is_told(scene, of, at);
         let where_to = || format!("{} {} its start", with_unit(at.abs(), "m"), direction(scene, at).side);
         format!("with hops and flights {}", if at_start { "back at its start".to_owned() } else { where_to() })
@@ -338,4 +372,18 @@ fn beside_slid(scene: &Scene, of: &BodyVerdict) -> String {
 fn is_told(scene: &Scene, of: &BodyVerdict, way: f64) -> bool {
     let block = scene.blocks.iter().find(|block| block.name == of.body);
     block.is_some_and(|block| way.abs() >= super::SLID * block.base())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_of_a_limit_is_not_rounded_to_the_other_side_of_it() {
+        for (part, told) in
+            [(0.123, "12.3 %"), (0.9999, "99.9 %"), (1.0, "100 %"), (1.002, "over 100 %"), (1.047, "105 %")]
+        {
+            assert_eq!(percent(part, &[]), told, "{part}");
+        }
+    }
 }

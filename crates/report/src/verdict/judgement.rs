@@ -2,7 +2,7 @@
 
 use super::lying::Side;
 use super::watch::Watched;
-use super::{BEGAN_TO_TIP, BodyVerdict, FLAT, Fate, Fates, Going, ROCKED, SLID, Seen, TUMBLED, Way};
+use super::{BEGAN_TO_TIP, BodyVerdict, FLAT, Fate, Fates, Going, ROCKED, ROLLED, SLID, Seen, TUMBLED, Way};
 use teeter_integrator::{RockingMonitor, State};
 use teeter_scenario::scene::{BlockScene, Placement};
 use teeter_scenario::simulation::Layout;
@@ -35,6 +35,11 @@ impl Seen {
         let stays_up = overturned.is_none() && fell.is_none();
         let displaced = self.stood.zip(place).map(|(from, to)| to - from).filter(|_| stays_up);
         let slides = Some(&self.slides).filter(|_| stays_up && self.touched.any());
+        // What fell from its place slid out of it as it did: where the one ends and the other begins isn't told.
+        let slid = match overturned {
+            Some(_) if self.touched.any() => self.slid_before,
+            _ => slides.map(|slides| [slides.at(), slides.in_all()]),
+        };
         let least = SLID * watched.base();
         let has_slid = slides.is_some_and(|slides| slides.most() >= least);
         let to_and_fro = slides.filter(|slides| slides.is_to_and_fro());
@@ -80,14 +85,18 @@ impl Seen {
             _ if has_slid => (Fate::Slid, None, None),
             _ => (Fate::Moves, None, None),
         };
+        let side_on = |slope: f64| Side::below(block, watched.outline.as_ref()?, self.angle - slope);
+        // What stands on a block that leans lies flat on that.
         let lies_on = rests
-            .and(watched.outline.as_ref())
-            .and_then(|outline| Side::below(block, outline, self.angle - watched.slope(&state.q)));
+            .and_then(|_| side_on(watched.slope(&state.q)).or_else(|| side_on(watched.turn(layout, number, state))));
         let leans = rests.is_some() && lies_on.is_none() && watched.outline.is_some();
         let turned = self.angle - self.from;
+        // Where pieces of a profile meet, a base goes a little less far than its feet.
+        let apart = if watched.carrier.is_terrain() { watched.base() } else { least };
         let is_free = matches!(block.placement, Placement::Free { .. });
-        let tumbled = self.began.filter(|_| is_free && what != Fate::Overturned).map(|_| turned);
-        let tilt = layout.tilt(number, &state.q);
+        let may_tumble = is_free && !watched.is_round && what != Fate::Overturned;
+        let tumbled = self.began.filter(|_| may_tumble).map(|_| turned);
+        let tilt = watched.against_carrier(layout, number, &state.q);
         let turns_on = |monitor: &&RockingMonitor| {
             let way = Way::of(tilt);
             way.sign() * watched.velocity(layout, number, state)[2] > 0.0 && monitor.extreme().phi.abs() <= tilt.abs()
@@ -108,10 +117,8 @@ impl Seen {
         let going = going.or((moves && stands_on_both && rocked).then_some(Going::Vibrates));
         let for_an_instant = self.still.is_some_and(|since| state.t - since < watched.still_time);
         let q = &state.q[layout.blocks[number].range.clone()];
-        let carrier_moves = || {
-            let [vx, vy, _] = watched.carrier.velocity([q[0], q[1]], None, layout, state);
-            state.t < watched.driven_until || vx.hypot(vy) > watched.still_speed
-        };
+        // What swings stands still twice a period.
+        let carrier_moves = || self.carried.is_some_and(lately);
         // Where what carries it is shaken, it may slide on.
         let stopped = what == Fate::Slid
             && rests.is_none()
@@ -141,14 +148,15 @@ impl Seen {
             rests_from: rests,
             leans_at: leans.then_some(tilt),
             lies_on,
-            slid: slides.map(|slides| slides.at()),
-            slid_in_all: slides.map(|slides| slides.in_all()),
+            slid: slid.map(|[at, _]| at),
+            slid_in_all: slid.map(|[_, in_all]| in_all),
             farthest: slides.and_then(|slides| slides.farthest(least)),
             displaced,
             has_slid,
             elsewhere: displaced.filter(|at| {
-                self.stands_from == Some(0.0) && slides.is_some_and(|slides| (at - slides.at()).abs() >= least)
+                self.stands_from == Some(0.0) && slides.is_some_and(|slides| (at - slides.at()).abs() >= apart)
             }),
+            rolled: (watched.is_round && self.rolled.abs() >= ROLLED).then_some(self.rolled),
             to_and_fro: to_and_fro.map(|slides| slides.reached()),
             is_driven: state.t < watched.driven_until,
             stopped,
@@ -164,7 +172,9 @@ impl Seen {
             turned: (what == Fate::Overturned && turned.abs() >= TUMBLED).then_some(turned.abs()),
             is_carried: rests.is_some() && {
                 let [vx, vy, spin] = watched.carrier.base_velocity([q[0], q[1]], layout, state);
-                state.t < watched.driven_until || vx.hypot(vy) + watched.reach * spin.abs() > watched.still_speed
+                // A record may end with the run.
+                state.t < watched.driven_until + watched.still_time
+                    || vx.hypot(vy) + watched.reach * spin.abs() > watched.still_speed
             },
             tumbled: tumbled.filter(|turn| turn.abs() >= TUMBLED),
             on_its_way: on_its_way.map(|_| tilt),

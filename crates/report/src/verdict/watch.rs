@@ -57,6 +57,23 @@ pub(super) struct Watched {
     pub(super) feet: Option<[[f64; 2]; 2]>,
 }
 
+/// The angle of a block against what carries it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Tilt {
+    /// That from which its crossings and peaks count, rad.
+    pub(crate) carrier: f64,
+    /// The slope of the line between its feet on its beam, rad, if it stands on one.
+    pub(crate) line: Option<f64>,
+}
+
+impl Tilt {
+    /// The angle from which its rocking counts, rad: on a beam against the line between its feet there, about which it rocks, however far the beam
+    /// slopes.
+    pub(crate) fn rocking(self) -> f64 {
+        self.carrier - self.line.unwrap_or(0.0)
+    }
+}
+
 impl Watch {
     pub(crate) fn of(scene: &Scene, layout: &Layout) -> Self {
         let gravity = scene.gravity[0].hypot(scene.gravity[1]);
@@ -130,9 +147,16 @@ impl Watched {
         self.feet.map_or(f64::INFINITY, |[left, right]| right[0] - left[0])
     }
 
-    /// The slope of what carries it against the level of gravity, rad.
+    /// The slope of the ground that carries it, directly or by others, where it is, against the level of gravity, rad.
     pub(super) fn slope(&self, q: &[f64]) -> f64 {
         self.carrier.slope(q) - self.outline.as_ref().map_or(0.0, Outline::level)
+    }
+
+    /// Its angle against what carries it, from which its crossings and peaks count, rad: on ground with a profile against its slope where the block
+    /// is, on a beam against its undeformed axis.
+    pub(super) fn against_carrier(&self, layout: &Layout, number: usize, q: &[f64]) -> f64 {
+        let phi = q[layout.blocks[number].range.start + 2];
+        if self.carrier.is_terrain() { phi - self.carrier.slope(q) } else { layout.tilt(number, q) }
     }
 
     /// The slope of the beam that carries it between its feet, put flat about the foot on which it is tilted, rad; `None` on anything else.
@@ -141,13 +165,9 @@ impl Watched {
         self.carrier.chord(self.place(layout, number, state)?, 0.5 * self.base(), layout, &state.q)
     }
 
-    /// Its angle against what carries it, from which its rocking counts, rad: on a beam against the line between its feet there, about which it
-    /// rocks, however far the beam slopes.
-    ///
-    /// With it comes the slope of that line, rad, if there is one.
-    pub(super) fn tilt(&self, layout: &Layout, number: usize, state: &State) -> (f64, Option<f64>) {
-        let line = self.chord(layout, number, state);
-        (layout.tilt(number, &state.q) - line.unwrap_or(0.0), line)
+    /// Its angle against what carries it.
+    pub(super) fn tilt(&self, layout: &Layout, number: usize, state: &State) -> Tilt {
+        Tilt { carrier: self.against_carrier(layout, number, &state.q), line: self.chord(layout, number, state) }
     }
 
     /// Against what that is, in words; none where it is the horizontal.
@@ -157,7 +177,7 @@ impl Watched {
             _ => None,
         };
         let below = layout.blocks.iter().find(|block| moving == Some(block.range.start + 2));
-        let slopes = || layout.tilt(number, q) != q[layout.blocks[number].range.start + 2];
+        let slopes = || self.against_carrier(layout, number, q) != q[layout.blocks[number].range.start + 2];
         below.map(|block| format!("`{}`", block.name)).or_else(|| slopes().then(|| "the ground".to_owned()))
     }
 
@@ -183,7 +203,7 @@ impl Watched {
     pub(super) fn place(&self, layout: &Layout, number: usize, state: &State) -> Option<f64> {
         let [left, right] = self.feet?;
         let q = &state.q[layout.blocks[number].range.clone()];
-        let ahead = layout.tilt(number, &state.q) >= 0.0;
+        let ahead = self.against_carrier(layout, number, &state.q) >= 0.0;
         let [x, y] = if ahead { left } else { right };
         let (sin, cos) = q[2].sin_cos();
         let half = 0.5 * (right[0] - left[0]);
@@ -210,11 +230,16 @@ impl Watched {
         self.total([v[0] - base[0], v[1] - base[1], v[2] - base[2]])
     }
 
+    /// The slope of what carries it directly, where it is, against the level of gravity, rad.
+    pub(super) fn turn(&self, layout: &Layout, number: usize, state: &State) -> f64 {
+        let q = &state.q[layout.blocks[number].range.clone()];
+        self.carrier.turn([q[0], q[1]], layout, &state.q) - self.outline.as_ref().map_or(0.0, Outline::level)
+    }
+
     /// By how much it is turned from lying flat on what carries it, where the block is, rad; 0 of one that has no sides to lie on.
     pub(super) fn turned(&self, layout: &Layout, number: usize, state: &State) -> f64 {
         let q = &state.q[layout.blocks[number].range.clone()];
-        let level = self.carrier.turn([q[0], q[1]], layout, &state.q);
-        let level = level - self.outline.as_ref().map_or(0.0, Outline::level);
+        let level = self.turn(layout, number, state);
         let stance = self.outline.as_ref().and_then(|outline| outline.stance(q[2] - level));
         stance.map_or(0.0, |stance| q[2] - level - stance.flat)
     }

@@ -394,6 +394,19 @@ fn the_last_peak_on_a_beam_is_that_of_the_table_of_half_cycles() {
     assert_eq!(rocks.summary.verdict[0].last_peak, Some(of_axis), "the file's counts from the axis, as its peaks");
 }
 
+/// What moves as prescribed has no verdict, but a place among the blocks before it: each of these is told by its own peaks.
+#[test]
+fn a_fixed_block_that_comes_first_leaves_the_last_peak_of_the_next_one_alone() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/free-rocking-on-beam.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    let shelf = "[block.shelf]\nmaterial = 'aluminium'\nwidth = '30 cm'\nheight = '2 cm'\ndepth = '3 cm'\n\
+        position = ['18 cm', '-1 m']\nfixed = true\n";
+    let with_shelf = run("shelf-first", &text.replace("[block.rocker]", &format!("{shelf}[block.rocker]")));
+    let alone = scenario("free-rocking-on-beam");
+    assert!(alone.summary.headline.contains("against the line between its feet"), "{}", alone.summary.headline);
+    assert_eq!(with_shelf.summary.headline, alone.summary.headline);
+}
+
 /// It ends on its way to a peak, while the beam's vibration turns the line between its feet to and fro.
 #[test]
 fn a_beam_that_vibrates_makes_no_peak_of_a_swing_that_goes_on() {

@@ -15,6 +15,7 @@ mod plots;
 mod records;
 mod sections;
 mod sizes;
+mod slopes;
 mod swings;
 mod table;
 mod unlocated;
