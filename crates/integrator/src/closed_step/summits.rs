@@ -1,6 +1,7 @@
 //! Frames in the middle of the motion itself, where an elastic surface comes out under a base.
 
 use super::{ClosedStep, SINKING};
+use crate::stage::RESERVED_CONTACTS;
 use crate::step_motion::StepMotion;
 use crate::{Contact, Mismatch, Model, State, Vector, Workspace};
 use teeter_detect::ContactId;
@@ -71,7 +72,9 @@ impl<const D: usize> Rounds<D> {
         }
     }
 
+    /// Makes room for so many contacts; of many, few are summits.
     pub(super) fn reserve(&mut self, contacts: usize) {
+        let contacts = contacts.min(RESERVED_CONTACTS);
         self.ways.reserve(contacts);
         self.ways_before.reserve(contacts);
     }
