@@ -31,7 +31,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Allocations in steps up to 0.3 s, which hold impacts, flight and phases with two contacts.
+/// Allocations in steps up to 0.06 s, which hold impacts, flight and phases with two contacts.
 fn allocations(surface: Box<dyn Subsystem<2>>, dofs: usize, theta: f64) -> u64 {
     let scheme = MoreauJean::new(MoreauJeanSettings { theta, ..MoreauJeanSettings::default() }).unwrap();
     count(surface, dofs, Box::new(scheme), PairLaw::new(0.5, 0.2))
@@ -39,7 +39,11 @@ fn allocations(surface: Box<dyn Subsystem<2>>, dofs: usize, theta: f64) -> u64 {
 
 fn count(surface: Box<dyn Subsystem<2>>, dofs: usize, mut scheme: Box<dyn Scheme<2>>, law: PairLaw) -> u64 {
     let model = model(&PAPER_BLOCK, Vector2::new(0.0, -9.81), law, Kinematics::Deformed, surface);
-    let mut q = vec![0.17405990783590924, 0.0685504782624077, 0.08726646259971647];
+    // Its left corner is 20 µm above the surface at 0.165 m: it lands within 3 ms, and the tilt of 3 mrad brings the other
+    // corner down soon after.
+    let (half_width, half_height, tilt, fall) = (0.015, 0.0675, 0.003_f64, 20e-6);
+    let (sin, cos) = tilt.sin_cos();
+    let mut q = vec![0.165 + half_width * cos - half_height * sin, half_width * sin + half_height * cos + fall, tilt];
     q.resize(3 + dofs, 0.0);
     let mut state = State::new(&model, &q, &vec![0.0; 3 + dofs], 1e-4).unwrap();
     let mut work = workspace(&model);
@@ -49,16 +53,18 @@ fn count(surface: Box<dyn Subsystem<2>>, dofs: usize, mut scheme: Box<dyn Scheme
         started => started.unwrap(),
     }
     let before = ALLOCATIONS.with(Cell::get);
-    let mut most = 0;
-    for _ in 0..3000 {
+    let (mut fewest, mut most) = (usize::MAX, 0);
+    for _ in 0..600 {
         let step = match scheme.advance(&model, &mut state, f64::INFINITY, &mut work) {
             // Nor with a law that it refuses.
             Err(StepError::Unsupported { .. }) => return 0,
             step => step.unwrap(),
         };
-        most = step.phases().map(|phase| phase.contacts.len()).fold(most, usize::max);
+        for phase in step.phases() {
+            (fewest, most) = (fewest.min(phase.contacts.len()), most.max(phase.contacts.len()));
+        }
     }
-    assert_eq!(most, 2, "the run is meant to meet two contacts");
+    assert_eq!((fewest, most), (0, 2), "the run is meant to meet flight and two contacts");
     ALLOCATIONS.with(Cell::get) - before
 }
 

@@ -246,7 +246,7 @@ fn the_energy_account_holds_the_work_of_the_drives() {
             q.resize(model.size().q, 0.0);
             let mut state = State::new(&model, &q, &vec![0.0; model.size().v], 1e-4).unwrap();
             let mut work = crate::scenes::workspace(&model);
-            let plan = Plan::steps(5000).when_unsolved(Unsolved::End);
+            let plan = Plan::steps(2000).when_unsolved(Unsolved::End);
             let ended = run(&model, scheme.as_mut(), &mut state, &mut work, &plan, &mut []).unwrap();
             assert_eq!(ended, Ended::Complete);
             let (residual, external) = (state.ledger.relative_residual(), state.ledger.sum.external);
