@@ -6,7 +6,7 @@ use crate::all_digits::{all_digits, with_all_digits};
 use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
 use teeter_integrator::State;
-use teeter_scenario::readable::{like, with_unit};
+use teeter_scenario::readable::{like, shortest, with_unit};
 use teeter_scenario::scene::Scene;
 
 /// Blocks up to this many are told one by one.
@@ -26,28 +26,37 @@ pub(crate) fn headline(
         }
         many => many::all(scene, many, state.t),
     };
-    let borne = beams.iter().filter_map(|beam| Some((beam.part_of_yield_strength?, beam)));
-    if let Some((part, beam)) = borne.max_by(|a, b| a.0.total_cmp(&b.0)) {
-        text.push_str(&format!("; `{}` was stressed to {} of its yield strength", beam.beam, percent(part, verdict)));
+    let judged = beams.iter().filter_map(|beam| Some((beam.decisive_part()?, beam)));
+    if let Some((_, beam)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        let part = beam.part_of_yield_strength.unwrap_or_default();
+        let (part, weight) = (percent(part, verdict), beam.about_weight(|part| percent(part, verdict)));
+        text.push_str(&format!("; `{}` was stressed to {part} of its yield strength{weight}", beam.beam));
     } else if verdict.is_empty() {
         let known = beams.iter().filter_map(|beam| Some((beam.largest_stress?, beam)));
         if let Some((largest, beam)) = known.max_by(|a, b| a.0.stress.total_cmp(&b.0.stress)) {
             let (stress, x) = (with_unit(largest.stress, "Pa"), with_unit(largest.x, "m"));
             text.push_str(&format!(
-                "; the largest stress is {stress} in `{}` at x = {x}, {}",
+                "; the largest stress is {stress} in `{}` at x = {x}, {}{}",
                 beam.beam,
-                time(largest.t)
+                time(largest.t),
+                if beam.is_without_weight { ", without its own weight" } else { "" }
             ));
         }
     }
     text
 }
 
-/// A part of the yield strength in percent. With blocks it is the stress of impacts, which depends on step and elements: `about`.
+/// A part of the yield strength in percent, never one that hides on which side of it the stress is. With blocks it is the stress of impacts, which
+/// depends on step and elements: `about`.
 pub(crate) fn percent(part: f64, verdict: &[BodyVerdict]) -> String {
     let (digits, cap, about) = if verdict.is_empty() { (3, 99.9, "") } else { (2, 99.0, "about ") };
-    let percent = if part < 1.0 { (100.0 * part).min(cap) } else { 100.0 * part };
-    format!("{about}{} %", teeter_scenario::readable::shortest(percent, digits))
+    if part <= 1.0 {
+        return format!("{about}{} %", shortest((100.0 * part).min(cap), digits));
+    }
+    match shortest(100.0 * part, 3).as_str() {
+        "100" => "just over 100 %".to_owned(),
+        percent => format!("{about}{percent} %"),
+    }
 }
 
 /// What became of beams without blocks: how far they deflected, in the order given.
@@ -338,4 +347,15 @@ fn beside_slid(scene: &Scene, of: &BodyVerdict) -> String {
 fn is_told(scene: &Scene, of: &BodyVerdict, way: f64) -> bool {
     let block = scene.blocks.iter().find(|block| block.name == of.body);
     block.is_some_and(|block| way.abs() >= super::SLID * block.base())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::percent;
+
+    #[test]
+    fn a_part_of_a_strength_is_on_its_side_of_it() {
+        assert_eq!([0.1234, 0.997, 1.0].map(|part| percent(part, &[])), ["12.3 %", "99.7 %", "99.9 %"]);
+        assert_eq!([1.0004, 1.0472, 2.5].map(|part| percent(part, &[])), ["just over 100 %", "105 %", "250 %"]);
+    }
 }
