@@ -46,7 +46,7 @@ pub fn tables(scene: &Scene, layout: &Layout) -> Vec<PhysicalTable> {
         table("Blocks", &["Block", "Size", "Mass", "α", "p"], blocks, scene.blocks.len()),
         table(
             "Beams",
-            &["Beam", "Span", "Thickness", "EI", "ρA", "Supports", "f₁", "Damping"],
+            &["Beam", "Span", "Thickness", "EI", "ρA", "f₁", "Damping", "Supports"],
             beams,
             scene.beams.len(),
         ),
@@ -110,9 +110,9 @@ fn beam(of: &BeamScene, place: &BeamPlace) -> Vec<String> {
         or_nothing((of.thickness > 0.0).then(|| with_unit(of.thickness, "m"))),
         format!("{}{varies}", with_unit(section.bending_stiffness, "N m²")),
         format!("{} kg/m{varies}", shortest(section.mass_per_length, 4)),
-        supports.join("; "),
         or_nothing(frequency.map(|frequency| with_unit(frequency, "Hz"))),
         or_nothing(damping(&spec.damping)),
+        supports.join("; "),
     ]
 }
 
@@ -171,7 +171,7 @@ mod tests {
         assert_eq!(tables[0].rows, [["b", "100 mm × 400 mm × 100 mm", "10.8 kg", "14.04°", "5.974 rad/s"]]);
         assert_eq!(tables[1].head[..5], ["Beam", "Span", "Thickness", "EI", "ρA"]);
         assert_eq!(tables[1].rows[0][1..5], ["3 m", "20 mm", "4.667 kN m²", "5.4 kg/m"]);
-        let supports = &tables[1].rows[0][5];
+        let supports = tables[1].rows[0].last().unwrap();
         for part in
             ["free, free", "20 MN/m²", "spring of 5 MN/m and dashpot of 2 kN s/m at 1 m", "mass of 40 kg at 2.4 m"]
         {

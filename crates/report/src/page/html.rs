@@ -266,7 +266,7 @@ mod tests {
                 ["title", "style", "script", "data", "verdict", "subtitle", "warnings", "tiles", "residual", "rocking"];
             assert!(
                 known.contains(&name)
-                    || ["borne", "model", "notdrawn", "numbers", "records", "settings", "shapes", "thrust"]
+                    || ["borne", "model", "notdrawn", "numbers", "physical", "records", "settings", "shapes", "thrust"]
                         .contains(&name),
                 "{name}"
             );

@@ -182,6 +182,7 @@ impl Filter {
         let most = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let highest: Vec<f64> = values[1..].chunks_exact(2).map(|pair| pair[0].max(pair[1])).collect();
         let mut largest = vec![0.0; borders.len()];
+        let mut rings_anywhere = false;
         for [begin, end] in self.stretches([0, borders.len() - 1]) {
             let begins = begin + usize::from(begin > 0);
             // What rang before a jolt rings on.
@@ -198,6 +199,7 @@ impl Filter {
                     first = after;
                     continue;
                 }
+                rings_anywhere = true;
                 let (at, most) = (first..after)
                     .map(|k| (k, highest[k]))
                     .fold((first, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
@@ -210,7 +212,7 @@ impl Filter {
                 largest[place] = interpolated(&nodes, borders[place]);
             }
         }
-        Some(largest)
+        rings_anywhere.then_some(largest)
     }
 }
 
@@ -348,7 +350,7 @@ mod tests {
             let filter = plain(&curves);
             assert_eq!(filter.ringing(&curves, 0).is_some(), rings, "{frequency}");
             assert_eq!(filter.through_the_largest(&curves, 1, None).is_some(), rings, "{frequency}");
-            assert_eq!(filter.through_the_largest(&curves, 1, Some(!rings)).is_some(), !rings, "{frequency}");
+            assert_eq!(filter.through_the_largest(&curves, 1, Some(false)), None, "{frequency}");
         }
     }
 
@@ -357,16 +359,16 @@ mod tests {
         let tau = 2.0 * std::f64::consts::PI;
         let stress = |t: f64| {
             let rings = if t < 0.6 { 3.0 * (tau * 400.0 * t).sin() } else { 0.0 };
-            (4.0 + 4.0 * (tau * 9.0 * t).sin() + rings).abs()
+            (4.0 + 4.0 * (tau * 3.0 * t).sin() + rings).abs()
         };
         let mut curves = Curves::new(10_000, 0.0, vec![stress(0.0)], 0);
         (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[stress(t)]));
         let largest = plain(&curves).through_the_largest(&curves, 0, Some(true)).unwrap();
         for (largest, t) in largest.iter().zip(curves.borders()) {
-            let slow = 4.0 + 4.0 * (tau * 9.0 * t).sin();
+            let slow = 4.0 + 4.0 * (tau * 3.0 * t).sin();
             match t {
-                // Two of its values are 20 ms apart, in which what is slow changes.
-                t if t < 0.58 => assert!((largest - slow - 3.0).abs() < 2.8, "{largest} at {t}"),
+                // Two of its values are 20 ms apart, in which what is slow changes by 1.5.
+                t if t < 0.58 => assert!((largest - slow - 3.0).abs() < 2.0, "{largest} at {t}"),
                 t if t > 0.62 => assert!((largest - slow).abs() < 1e-3, "{largest}, not {slow} at {t}"),
                 _ => {}
             }
@@ -474,22 +476,22 @@ mod tests {
         assert_eq!(filter.told(), "20 ms, not across impacts");
     }
 
-    /// A vibration that grows from the impact on reaches its largest value 10 ms later: what is strong does no sooner, nor is it held.
+    /// A vibration that grows from the impact on reaches its largest value 10 ms later: what is strong does no sooner, nor is it held, but follows what is slow
+    /// of it, also where other periods ring.
     #[test]
     fn the_largest_values_after_an_impact_are_no_step() {
         let tau = 2.0 * std::f64::consts::PI;
-        let stress = |t: f64| (157.0 * (tau * 25.0 * (t - 0.2)).sin()).abs() + 3.0 * (tau * 900.0 * t).sin().abs();
-        let curves = struck(&[0.2], stress);
+        let slow = |t: f64| (157.0 * (tau * 25.0 * (t - 0.2)).sin()).abs();
+        let rings = |t: f64| if t > 0.6 { 30.0 } else { 3.0 } * (tau * 900.0 * t).sin().abs();
+        let curves = struck(&[0.2], |t| slow(t) + rings(t));
         let filter = Filter::of(&curves, &jolts(&[0.2]), &[]);
         let largest = filter.through_the_largest(&curves, 0, Some(true)).unwrap();
-        let at = |t: f64| largest[curves.borders().partition_point(|border| *border < t)];
-        assert!(
-            at(0.2005) < 30.0 && at(0.205) < 120.0 && at(0.21) > 155.0,
-            "{} {} {}",
-            at(0.2005),
-            at(0.205),
-            at(0.21)
-        );
+        for t in [0.2005, 0.205, 0.21] {
+            let place = curves.borders().partition_point(|border| *border < t);
+            let exact = slow(curves.borders()[place]);
+            // A bucket has sixteen steps, of which the curve has the extremes.
+            assert!((largest[place] - exact).abs() < 0.1 * 157.0, "{}, not {exact} at {t}", largest[place]);
+        }
     }
 
     #[test]
