@@ -182,6 +182,9 @@ fn beam(beam: &BeamPreview) -> String {
     if let Some(axial) = beam.axial {
         let _ = write!(text, "; {axial}");
     }
+    for what in beam.furniture.iter().take(LISTED) {
+        let _ = write!(text, "\n    with {what}");
+    }
     if let Some(frequency) = beam.first_frequency {
         let own = if beam.frequency_is_exact { "the continuous beam" } else { "a mesh eight times as fine" };
         let _ = write!(

@@ -10,7 +10,7 @@ use crate::scene;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use teeter_report::{ENERGY_MADE, ENERGY_TAKEN, FILES, HORIZON, Results, UNLOCATED, with_digits, with_unit};
+use teeter_report::{ENERGY_MADE, ENERGY_TAKEN, FILES, HORIZON, Results, UNLOCATED, YIELD, with_digits, with_unit};
 use teeter_run::{
     EndedWord, ExistingResults, ExportWhen, Extent, FinishedRun, Hooks, LoadError, PrepareError, Prepared, RunError,
     RunJob, RunStart, StateDump, Summary,
@@ -274,7 +274,7 @@ fn report_end(console: Console, options: &Options, summary: &Summary, folder: &P
     for warning in summary
         .warnings
         .iter()
-        .filter(|warning| [ENERGY_MADE, ENERGY_TAKEN, HORIZON, UNLOCATED].contains(&warning.code.as_ref()))
+        .filter(|warning| [ENERGY_MADE, ENERGY_TAKEN, HORIZON, UNLOCATED, YIELD].contains(&warning.code.as_ref()))
     {
         console.note(&format!("warning: {}", warning.text));
     }
@@ -337,7 +337,7 @@ fn format_summary(summary: &Summary, folder: &Path, horizon: bool, report: bool)
             } else {
                 String::new()
             },
-            count(summary.crossings.len() as u64, "zero crossing"),
+            count(summary.crossing_count.unwrap_or(summary.crossings.len() as u64), "zero crossing"),
             with_digits(summary.told_penetration(), "m", 2),
         ));
     }

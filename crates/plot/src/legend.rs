@@ -82,6 +82,8 @@ impl<'a> Entry<'a> {
     /// The entry of a series; none without a name.
     pub(crate) fn of(series: &'a Series, number: usize) -> Option<Self> {
         let symbol = match series.drawn {
+            // A line that is alone somewhere is solid there, and its sample, too.
+            Drawn::Line if series.solid_stretches().is_some() => Symbol::Line { number, dash: Dash::ByNumber },
             Drawn::Line => Symbol::Line { number, dash: series.dash },
             Drawn::Marks { mark, hollow } => Symbol::Marks { mark, hollow, faint: series.faint, number },
             Drawn::Area => Symbol::Area(number),

@@ -338,6 +338,11 @@ impl Panel {
                 false => "stroke-width=\"1.1\"",
             };
             let _ = writeln!(svg, "<path d=\"{path}\" {stroke} {weight}/>");
+            if let Some(alone) = line.solid_stretches() {
+                let path = line_path(&alone, |x| frame.px(x), py);
+                let colour = Colour::Series(line.number_at(k)).value(theme);
+                let _ = writeln!(svg, "<path d=\"{path}\" stroke=\"{colour}\" {weight}/>");
+            }
         }
         svg.push_str("</g>\n");
         Self::draw_marks(svg, &inner, theme, y, series, false);

@@ -13,6 +13,8 @@ pub struct Series {
     pub(crate) drawn: Drawn,
     pub(crate) dash: Dash,
     pub(crate) faint: bool,
+    /// Of a line on others, by points, where it doesn't lie on any of them; empty for nowhere.
+    pub(crate) alone: Vec<bool>,
 }
 
 /// By what a line is dashed.
@@ -69,6 +71,7 @@ impl Series {
             drawn: Drawn::Line,
             dash: Dash::ByNumber,
             faint: false,
+            alone: Vec::new(),
         }
     }
 
@@ -161,12 +164,35 @@ impl Series {
         self
     }
 
-    /// Dashes each line that lies within `tolerance` of an earlier one, or does so for half of its length away from 0: that one shows in the
-    /// gaps. Of several on each other each later one has shorter dashes. Returns how many lie on each other where these are too many for that.
+    /// Draws a line on others solid about the points for which this is true, as it lies on none of them there.
+    #[must_use]
+    pub fn alone_at(mut self, points: impl IntoIterator<Item = bool>) -> Self {
+        self.alone = points.into_iter().collect();
+        self
+    }
+
+    /// The stretches of a dashed line that are solid: the points at which it lies on no other one and their neighbours, with gaps between.
+    pub(crate) fn solid_stretches(&self) -> Option<Vec<(f64, f64)>> {
+        let is_alone = |k: usize| self.alone.get(k).copied().unwrap_or(false);
+        let of_dashed = matches!(self.dash, Dash::Over(_)) && self.alone.contains(&true);
+        of_dashed.then(|| {
+            let points = self.points.iter().enumerate();
+            let solid = |k: usize| is_alone(k) || is_alone(k + 1) || k.checked_sub(1).is_some_and(is_alone);
+            points.map(|(k, &(x, y))| (x, if solid(k) { y } else { f64::NAN })).collect()
+        })
+    }
+
+    /// Dashes each line that lies within `tolerance` of an earlier one, or does so for half of its length away from 0, where it does: that one
+    /// shows in the gaps. Of several on each other each later one has shorter dashes. Returns how many lie on each other where these are too many for that.
     pub(crate) fn tell_apart(lines: &mut [Self], tolerance: f64) -> usize {
         let found = coincident(lines.len(), |k, earlier| lines[k].lies_on(&lines[earlier], tolerance));
-        for (line, over) in lines.iter_mut().zip(&found.over).filter(|(_, over)| **over > 0) {
-            line.dash = Dash::Over(*over);
+        for k in (0..lines.len()).filter(|k| found.over[*k] > 0) {
+            let (earlier, later) = lines.split_at_mut(k);
+            let line = &mut later[0];
+            let below = || earlier.iter().filter(|other| line.lies_on(other, tolerance));
+            let near = |i: usize, other: &Self| (line.points[i].1 - other.points[i].1).abs() <= tolerance;
+            line.alone = (0..line.points.len()).map(|i| !below().any(|other| near(i, other))).collect();
+            line.dash = Dash::Over(found.over[k]);
         }
         found.too_many
     }

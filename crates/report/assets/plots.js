@@ -41,7 +41,7 @@ const plots = (() => {
       const key = htmlElement("span", series.label ? "key" : "key bare", undefined, legend);
       const swatch = svgElement("svg", { viewBox: "0 0 18 8", "aria-hidden": "true" }, key);
       if (series.upper) svgElement("path", { d: "M0 0h18v8h-18z", class: "area", style: `fill: ${colour(series.index)}; fill-opacity: ${series.inner ? 0.45 : 0.2}` }, swatch);
-      else svgElement("path", { d: "M0 4h18", style: `${stroke(series)}${offset(series)}`, "stroke-width": 2 }, swatch);
+      else svgElement("path", { d: "M0 4h18", style: `${series.alone?.includes(true) ? solidStroke(series) : stroke(series) + offset(series)}`, "stroke-width": 2 }, swatch);
       if (series.label) key.append(series.label);
       series.readout = htmlElement("b", "", "", key);
     }
@@ -94,6 +94,7 @@ const plots = (() => {
   /** The dashes of a line on others, as in the figures: all have the same period, each half the dashes of the one below. */
   const over = (lines) => [10 / 2 ** lines, 10 - 10 / 2 ** lines];
   const stroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${series.over ? over(series.over).join(" ") : dash(series.index)}; fill: none`;
+  const solidStroke = (series) => `stroke: ${colour(series.index)}; fill: none`;
   /** Of the sample of a line on others in a legend: from the middle of a dash on, as its gap would not be seen at an end. */
   const offset = (series) => (series.over ? `; stroke-dashoffset: ${over(series.over)[0] / 2}` : "");
 
@@ -104,7 +105,10 @@ const plots = (() => {
   /** On more others than this a line isn't dashed: its dashes would be too short to be seen. */
   const mostOver = 3;
 
-  /** Dashes a line that lies on earlier ones, which then show in the gaps: within 1 % of what the panel shows, all along or for half of its length away from 0.
+  /** Of a dashed line, its values where it lies on none of the others, and beside that: there it is solid. */
+  const alone = (series, values) => (series.over ? values.map((x, i) => (series.alone[i - 1] || series.alone[i] || series.alone[i + 1] ? x : null)) : null);
+
+  /** Dashes a line that lies on earlier ones where it does, which then show in the gaps: within 1 % of what the panel shows, all along or for half of its length away from 0.
       Where too many lie on each other none is dashed, and the panel says how many they are. */
   function tellApart(panel) {
     const { series, cut } = panel;
@@ -135,6 +139,10 @@ const plots = (() => {
       panel.tooMany = Math.max(panel.tooMany, own.length);
       own.forEach((line) => { line.over = 0; });
     }
+    series.forEach((line, k) => {
+      const below = line.over ? series.slice(0, k).filter((earlier) => near(line, earlier)) : [];
+      line.alone = line.over ? line.y.map((x, i) => !below.some(({ y }) => Math.abs(x - y[i]) <= within)) : [];
+    });
   }
 
   function add(panel) {
@@ -142,6 +150,7 @@ const plots = (() => {
     panel.element.id = `panel-${panel.id}`;
     panel.element.dataset.unit = panel.unit ?? "";
     if (!panel.portrait) tellApart(panel);
+    else panel.series.forEach((series) => { series.alone = series.t.map((_, i) => (series.turns ?? []).filter((turn) => turn <= i).length % 2 === 1); });
     panel.most = largestOf(panel);
     head(panel, panel.element);
     panel.svg = svgElement("svg", { class: "plot", role: "img", tabindex: 0, "aria-label": spoken.plot(panel) }, panel.element);
@@ -227,7 +236,10 @@ const plots = (() => {
 
   function curve(series, x, y) {
     if (series.upper) return `<path class="area" style="fill: ${colour(series.index)}" d="${area(series, x, y)}"/>`;
-    return `<path class="curve${series.raw ? " raw" : isDense(series, y) ? " dense" : ""}" style="${stroke(series)}" d="${path(series, x, y)}"/>`;
+    const kind = `curve${series.raw ? " raw" : isDense(series, y) ? " dense" : ""}`;
+    const solid = series.over && series.alone.includes(true)
+      ? `<path class="${kind}" style="${solidStroke(series)}" d="${path({ ...series, y: alone(series, series.y) }, x, y)}"/>` : "";
+    return `<path class="${kind}" style="${stroke(series)}" d="${path(series, x, y)}"/>${solid}`;
   }
 
   function axes(svg, size, xTicks, yTicks, x, y) {
@@ -345,10 +357,17 @@ const plots = (() => {
     const [right, bottom] = [size.width - margin.right, size.height - portraitBottom];
     const x = (value) => margin.left + ((value - x0) / (x1 - x0)) * (right - margin.left);
     const y = (value) => margin.top + ((y1 - value) / (y1 - y0)) * (bottom - margin.top);
-    const curve = (series, from, to) => {
-      let d = "";
-      for (let i = from; i < to; i++) d += `${d ? "L" : "M"}${x(series.x[i]).toFixed(1)} ${y(series.y[i]).toFixed(1)}`;
+    const curve = (series, from, to, values = series.y) => {
+      let [d, pen] = ["", "M"];
+      for (let i = from; i < to; i++) {
+        if (values[i] !== null) d += `${pen}${x(series.x[i]).toFixed(1)} ${y(values[i]).toFixed(1)}`;
+        pen = values[i] === null ? "M" : "L";
+      }
       return d;
+    };
+    const curves = (series, from, to, faint = "") => {
+      const solid = series.over ? `<path class="curve${faint}" style="${solidStroke(series)}" d="${curve(series, from, to, alone(series, series.y))}"/>` : "";
+      return `<path class="curve${faint}" style="${stroke(series)}" d="${curve(series, from, to)}"/>${solid}`;
     };
     const whole = view[0] <= start && view[1] >= end;
     setAll(panel.svg, { viewBox: `0 0 ${size.width} ${size.height}` });
@@ -363,12 +382,12 @@ const plots = (() => {
         .map((at) => `<path class="guide" d="M${x(at).toFixed(1)} ${margin.top}V${bottom}"/>`).join("")
       + panel.series.map((series) => {
         const [from, to] = [indexAt(series.t, view[0]), indexAt(series.t, view[1]) + 1];
-        const faint = whole ? "" : `<path class="curve faint" style="${stroke(series)}" d="${curve(series, 0, series.t.length)}"/>`;
+        const faint = whole ? "" : curves(series, 0, series.t.length, " faint");
         // Of hundreds of turns a few are strong; zoomed in, all that is in view.
         const [first, last] = whole ? series.strong ?? [from, to] : [from, to];
         const pale = [[from, first + 1], [last - 1, to]].filter(([a, b]) => b - a > 1 && b - a < to - from)
-          .map(([a, b]) => `<path class="curve faint" style="${stroke(series)}" d="${curve(series, a, b)}"/>`).join("");
-        return `${faint}${pale}<path class="curve" style="${stroke(series)}" d="${curve(series, first, last)}"/>`;
+          .map(([a, b]) => curves(series, a, b, " faint")).join("");
+        return `${faint}${pale}${curves(series, first, last)}`;
       }).join("");
     panel.dots = panel.series.map((series) => svgElement("circle", { r: 4.5, style: `fill: ${colour(series.index)}` }, panel.svg));
     panel.place = (series, t) => [x(valueAt({ t: series.t, y: series.x }, t)), y(valueAt(series, t))];

@@ -313,6 +313,27 @@ const scene = (() => {
     return path;
   }
 
+  /** A spring down from (x, y). */
+  const spring = (x, y) => `M${x.toFixed(1)} ${y.toFixed(1)}v3l-5 2l10 4l-10 4l10 4l-5 2v3`;
+
+  /** A row of springs under a part of a beam, on hatched ground. */
+  function drawFoundation(parent, [from, to], y) {
+    const [left, length] = [from, to - from];
+    const count = Math.max(2, Math.round(length / 22));
+    let path = "";
+    for (let k = 0; k < count; k++) path += spring(left + ((k + 0.5) / count) * length, y);
+    const group = svgElement("g", { "data-foundation": "" }, parent);
+    svgElement("title", {}, group).textContent = "elastic foundation";
+    svgElement("path", { d: `${path}M${left.toFixed(1)} ${(y + 22).toFixed(1)}h${length.toFixed(1)}`, class: "support springs" }, group);
+    svgElement("path", { d: hatch(left + 5, y + 22, length - 5, 6, 5), class: "hatch" }, group);
+  }
+
+  /** A dashpot beside the spring of a support. */
+  function drawDashpot(parent, x, y) {
+    const d = `M${x} ${y}m14 0h-14m14 0v9m-4 0h8m-10 -3v10h12v-10m-6 10v6`;
+    svgElement("path", { d, class: "support springs", "data-dashpot": "" }, parent);
+  }
+
   function drawSupport(parent, kind, x, y, right, roller) {
     if (kind === "pinned") {
       svgElement("path", { d: `M${x} ${y}l-7 12h14z`, class: "support" }, parent);
@@ -329,7 +350,7 @@ const scene = (() => {
       const side = right ? 1 : -1;
       svgElement("path", { d: `M${x} ${y - 16}v32m${5 * side} 0v-32`, class: "support" }, parent);
     } else if (kind === "elastic") {
-      svgElement("path", { d: `M${x} ${y}v3l-5 2l10 4l-10 4l10 4l-5 2v3m-9 0h18`, class: "support" }, parent);
+      svgElement("path", { d: `${spring(x, y)}m-9 0h18`, class: "support" }, parent);
       svgElement("path", { d: hatch(x - 6, y + 22, 16, 4, 5), class: "hatch" }, parent);
     }
   }
@@ -393,7 +414,15 @@ const scene = (() => {
       drawSupport(group, beam.supports[0], px(beam.x), low, false, false);
       drawSupport(group, beam.supports[1], px(beam.x + beam.span), low, true, !beam.held);
       for (const [x, kind] of beam.inner) drawSupport(group, kind, px(beam.x + x), low, true, true);
-      return { group, line, thickness, edge };
+      for (const [from, to] of beam.foundations) drawFoundation(group, [px(beam.x + from), px(beam.x + to)], low);
+      const held = [0, beam.span, ...beam.inner.map(([x]) => x)];
+      held.forEach((x, k) => { if (beam.dashpots[k]) drawDashpot(group, px(beam.x + x), low); });
+      const masses = beam.masses.map((x) => {
+        const mass = svgElement("circle", { r: 6, cx: px(beam.x + x).toFixed(2), class: "mass", "data-mass": x }, group);
+        svgElement("title", {}, mass).textContent = "mass that the beam carries";
+        return mass;
+      });
+      return { group, line, thickness, edge, masses };
     });
     layers.crowd = [];
     if (crowded) {
@@ -698,7 +727,7 @@ const scene = (() => {
       layers.ground.setAttribute("transform", `translate(${at0}) rotate(${(-slope * degrees).toFixed(4)})`);
     }
     scenery.beams.forEach((beam, k) => {
-      const { group, line, thickness, edge } = layers.beams[k];
+      const { group, line, thickness, edge, masses } = layers.beams[k];
       const [across, up] = moved(k, picture);
       group.setAttribute("transform", `translate(${(across * view.scale).toFixed(2)} ${(-up * view.scale).toFixed(2)})`);
       const top = [];
@@ -710,6 +739,11 @@ const scene = (() => {
         bottom.unshift(`${px(beam.x + x).toFixed(2)} ${(y + thickness).toFixed(2)}`);
       }
       line.setAttribute("d", `M${top.concat(bottom).join("L")}Z`);
+      // On its axis, in the middle of what is drawn.
+      masses.forEach((mass, i) => {
+        const y = py(beam.y + exaggeration * deflection(k, picture, beam.masses[i])) - edge + thickness / 2;
+        mass.setAttribute("cy", y.toFixed(2));
+      });
     });
     for (const { blocks, path } of layers.crowd) path.setAttribute("d", blocks.map((k) => crowdOutline(k, at)).join(""));
     (crowded ? [] : scenery.blocks).forEach((_, k) => {

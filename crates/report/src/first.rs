@@ -5,7 +5,7 @@
 const ROUNDING: f64 = 1e-9;
 
 /// Whether a value, not negative, is larger than the largest so far by more than rounding.
-fn exceeds(value: f64, largest: f64) -> bool {
+pub(crate) fn exceeds(value: f64, largest: f64) -> bool {
     value > largest * (1.0 + ROUNDING)
 }
 

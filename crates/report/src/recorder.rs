@@ -519,9 +519,7 @@ impl Observer<2> for Recorder<'_> {
         self.warn_of_bounces(model, step);
         let Kept { record, section_values, .. } = &mut self.kept;
         let kept = (record.beams.as_mut_slice(), section_values);
-        if let Some(text) = self.sections.observe(step, kept, &mut record.warnings) {
-            (self.tell)(&text);
-        }
+        self.sections.observe(step, kept, &mut record.warnings);
         self.look_at_deflections(state);
         self.kept.record.fates.observe(&self.fate_watch, self.layout, step, state);
         let Record { rocking, feet_lines, fates, .. } = &mut self.kept.record;

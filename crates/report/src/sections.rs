@@ -4,10 +4,11 @@
 use crate::WarningLog;
 use crate::first;
 use crate::number::{push, push_next};
-use crate::{with_digits, with_unit};
+use crate::own_weight;
+use crate::{YIELD, with_digits, with_unit};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use teeter_beam::{Actions, Beam, Envelope, SectionForces};
+use teeter_beam::{Actions, Beam, Envelope, PeakStress, SectionForces};
 use teeter_integrator::{BeamForces, State, StepReport};
 use teeter_scenario::scene::{BeamQuantity, BeamScene, LoadKind, Scene};
 use teeter_scenario::simulation::{BeamPlace, Layout};
@@ -122,8 +123,12 @@ pub struct BeamRecord {
     pub beam: String,
     /// The largest stress; none where the section doesn't know its modulus.
     pub largest: Option<LargestStress>,
-    /// The stress at the time told of that, Pa.
-    pub first: f64,
+    /// The same with the beam's own weight, where the scene leaves that out and it is known what it does.
+    #[serde(default)]
+    pub largest_with_weight: Option<LargestStress>,
+    /// The stresses at the times told of these two, Pa.
+    #[serde(default)]
+    pub first: [f64; 2],
     /// The supports, where the scene asks for reactions.
     pub reactions: Vec<ReactionRange>,
     /// Extremes by nodes, where the scene asks for them.
@@ -200,6 +205,9 @@ struct Watched {
     /// Of its columns the first that is not a deflection's, among those of all beams.
     first: usize,
     yield_strength: Option<f64>,
+    /// Whether gravity acts in the scene, but not on it; and the forces of its weight then, if they are known.
+    is_without_weight: bool,
+    own_weight: Option<SectionForces>,
 }
 
 /// The beams that ask for more than deflections, or whose material's yield strength is known.
@@ -217,13 +225,20 @@ impl Sections {
         let columns: Vec<_> = beams().map(|(number, (of, place))| columns_of(number, of, place)).collect();
         let mut first = 0;
         let mut watched = Vec::new();
-        for (number, (of, _)) in beams() {
+        for (number, (of, place)) in beams() {
             let columns: Vec<_> =
                 columns[number].iter().filter(|column| column.kind != Kind::Deflection).cloned().collect();
             if of.output.needs_forces() || of.yield_strength.is_some() {
                 let own = columns.len();
                 let forces = layout.beam_forces(scene, number);
-                watched.push(Watched { forces, columns, first, yield_strength: of.yield_strength });
+                watched.push(Watched {
+                    forces,
+                    columns,
+                    first,
+                    yield_strength: of.yield_strength,
+                    is_without_weight: own_weight::is_left_out(scene, of),
+                    own_weight: own_weight::left_out(scene, of, &place.beam),
+                });
                 first += own;
             }
         }
@@ -237,7 +252,8 @@ impl Sections {
         let record = |(of, place): (&BeamScene, &BeamPlace)| BeamRecord {
             beam: place.name.clone(),
             largest: None,
-            first: 0.0,
+            largest_with_weight: None,
+            first: [0.0; 2],
             reactions: Vec::new(),
             envelope: of
                 .output
@@ -299,18 +315,17 @@ impl Sections {
                     })
                     .collect();
             }
-            record.take(watched.forces.beam(), watched.forces.dofs(), forces, state.t);
+            record.take(watched.forces.beam(), watched.forces.dofs(), (forces, watched.own_weight.as_ref()), state.t);
         }
     }
 
-    /// Takes a step in. Returns what is to be told of yielding.
+    /// Takes a step in, and warns of yielding.
     pub(crate) fn observe(
         &mut self,
         step: &StepReport<'_, 2>,
         (records, values): (&mut [BeamRecord], &mut Values),
         warnings: &mut WarningLog,
-    ) -> Option<String> {
-        let mut told = None;
+    ) {
         let beams = self.watched.len().min(records.len());
         for beam in 0..beams {
             let (watched, record) = (&mut self.watched[beam], &mut records[beam]);
@@ -324,29 +339,43 @@ impl Sections {
                 continue;
             }
             let forces = watched.forces.forces();
-            let largest = record.take(watched.forces.beam(), watched.forces.dofs(), forces, step.t_end);
-            if let (Some(LargestStress { stress, x, t }), Some(strength)) = (largest, watched.yield_strength)
-                && stress > strength
+            let both = (forces, watched.own_weight.as_ref());
+            let stress = record.take(watched.forces.beam(), watched.forces.dofs(), both, step.t_end);
+            if let (Some(now), Some(strength)) = (stress, watched.yield_strength)
+                && now.stress > strength
             {
-                let text = warnings.enter("yield", Some(t), || {
-                    format!(
-                        "the stress in `{}` passes its yield strength in the step to t = {}: {} of {} at x = {}; \
-                         the model stays elastic",
-                        record.beam,
-                        with_digits(t, "s", 7),
-                        with_unit(stress, "Pa"),
-                        with_unit(strength, "Pa"),
-                        with_unit(x, "m")
-                    )
+                // Of several beams the one that is furthest beyond its strength.
+                let part = now.stress / strength;
+                let most = self.watched.iter().zip(&*records).filter_map(|(of, record)| {
+                    Some((record.decisive()?, of.yield_strength?)).map(|(largest, strength)| largest.stress / strength)
                 });
-                told = told.or(text);
+                let is_largest = !first::exceeds(most.fold(0.0, f64::max), part)
+                    && records[beam].decisive().is_some_and(|largest| largest.t == now.t);
+                let (watched, record) = (&self.watched[beam], &records[beam]);
+                warnings.enter_largest(YIELD, now.t, is_largest, || watched.yielding(&record.beam, now, strength));
             }
         }
-        told
     }
 }
 
 impl Watched {
+    /// That a beam's stress passes its yield strength, Pa.
+    fn yielding(&self, beam: &str, LargestStress { stress, x, t }: LargestStress, strength: f64) -> String {
+        let weight = match (self.is_without_weight, &self.own_weight) {
+            (false, _) => "",
+            (true, Some(_)) => " with the beam's own weight, which `self_weight = false` leaves out of the run,",
+            (true, None) => ", even without the beam's own weight,",
+        };
+        format!(
+            "the stress in `{beam}`{weight} passes its yield strength: up to {} of {} at x = {}, in the step to t = {}; the model \
+             stays elastic",
+            with_digits(stress, "Pa", 4),
+            with_unit(strength, "Pa"),
+            with_unit(x, "m"),
+            with_digits(t, "s", 7)
+        )
+    }
+
     /// The values of the step entered last; NaN where it has none.
     fn fill(&self, fine: bool, values: &mut Values) {
         let (beam, forces) = (self.forces.beam(), self.forces.forces());
@@ -373,8 +402,15 @@ impl Watched {
 }
 
 impl BeamRecord {
-    /// Takes the forces of a step in, and returns its largest stress.
-    fn take(&mut self, beam: &Arc<Beam>, q: &[f64], forces: &SectionForces, t: f64) -> Option<LargestStress> {
+    /// Takes the forces of a step in, and those of the beam's own weight where they are known beside them. Returns the largest stress of
+    /// the step: of both together.
+    fn take(
+        &mut self,
+        beam: &Arc<Beam>,
+        q: &[f64],
+        (forces, own_weight): (&SectionForces, Option<&SectionForces>),
+        t: f64,
+    ) -> Option<LargestStress> {
         if let Some(envelope) = &mut self.envelope {
             envelope.take(beam, q, forces);
         }
@@ -383,14 +419,34 @@ impl BeamRecord {
             widen(&mut range.force, reaction.force);
             widen(&mut range.couple, reaction.couple);
         }
-        let peak = forces.largest_stress(beam)?;
-        let found = LargestStress { stress: peak.stress, x: peak.x, t };
-        let largest = self.largest.get_or_insert(found);
-        if first::enter(found.stress, &mut largest.stress, &mut self.first) {
-            *largest = found;
+        let Self { largest, largest_with_weight, first: [first, first_with_weight], .. } = self;
+        let found = largest_of((largest, first), forces.largest_stress(beam), t);
+        match own_weight {
+            None => found,
+            weight => {
+                largest_of((largest_with_weight, first_with_weight), forces.largest_stress_beside(beam, weight), t)
+            }
         }
-        Some(found)
     }
+
+    /// The largest stress by which the beam is judged: with its own weight where that is known.
+    pub(crate) fn decisive(&self) -> Option<LargestStress> {
+        self.largest_with_weight.or(self.largest)
+    }
+}
+
+/// Takes the largest stress of a step for that of the run if it is; with the stress at the time told of that, Pa.
+fn largest_of(
+    (largest, first): (&mut Option<LargestStress>, &mut f64),
+    peak: Option<PeakStress>,
+    t: f64,
+) -> Option<LargestStress> {
+    let found = peak.map(|PeakStress { x, stress, .. }| LargestStress { stress, x, t })?;
+    let largest = largest.get_or_insert(found);
+    if first::enter(found.stress, &mut largest.stress, first) {
+        *largest = found;
+    }
+    Some(found)
 }
 
 pub(crate) const ENVELOPES_HEADER: &str = "beam,x,w_min,w_max,moment_min,moment_max,shear_min,shear_max,stress_max,\

@@ -13,7 +13,7 @@ pub use records::RecordSummary;
 use crate::told::Told;
 use crate::verdict::{BodyVerdict, StopReason, headline};
 use crate::{BeamRecord, ImpactRow, LargestDeflection, LargestStress, ReactionRange, Record, Warning};
-use crate::{made_energy, taken_energy, unlocated};
+use crate::{made_energy, own_weight, taken_energy, unlocated};
 use serde::Serialize;
 use teeter_integrator::{Ended, RockingMonitor, State};
 use teeter_scenario::scene::Scene;
@@ -231,20 +231,54 @@ pub struct BorneSummary {
     /// The same as a part of the yield strength, where that is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub part_of_yield_strength: Option<f64>,
+    /// Both with the beam's own weight, where the scene leaves that out (`self_weight = false`) and its supports hold it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_stress_with_own_weight: Option<LargestStress>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub part_with_own_weight: Option<f64>,
+    /// Whether the scene leaves it out.
+    #[serde(skip)]
+    pub(crate) is_without_weight: bool,
     /// What its supports bore, where the scene asks for it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub reactions: Vec<ReactionRange>,
 }
 
+/// What a beam's own weight adds to its stress is told from this part of the yield strength on.
+const WEIGHT_ADDS: f64 = 0.02;
+
 impl BorneSummary {
     fn new(scene: &Scene, borne: &BeamRecord) -> Self {
-        let strength = scene.beams.iter().find(|beam| beam.name == borne.beam).and_then(|beam| beam.yield_strength);
+        let of = scene.beams.iter().find(|beam| beam.name == borne.beam);
+        let strength = of.and_then(|beam| beam.yield_strength);
+        let part = |of: Option<LargestStress>| of.zip(strength).map(|(largest, strength)| largest.stress / strength);
         Self {
             beam: borne.beam.clone(),
             largest_stress: borne.largest,
-            part_of_yield_strength: borne.largest.zip(strength).map(|(largest, strength)| largest.stress / strength),
+            part_of_yield_strength: part(borne.largest),
+            largest_stress_with_own_weight: borne.largest_with_weight,
+            part_with_own_weight: part(borne.largest_with_weight),
+            is_without_weight: of.is_some_and(|beam| own_weight::is_left_out(scene, beam)),
             reactions: borne.reactions.clone(),
         }
+    }
+
+    /// The part of the yield strength by which the beam is judged: with its own weight where that is known.
+    pub(crate) fn decisive_part(&self) -> Option<f64> {
+        self.part_with_own_weight.or(self.part_of_yield_strength)
+    }
+
+    /// What is said of the beam's own weight after the part of its yield strength: nothing unless the scene leaves it out; and what it adds, where
+    /// that is worth telling.
+    pub(crate) fn about_weight(&self, percent: impl Fn(f64) -> String) -> String {
+        if !self.is_without_weight {
+            return String::new();
+        }
+        let without = self.part_of_yield_strength.unwrap_or_default();
+        let adds = |with: &f64| (with - without).abs() > WEIGHT_ADDS || (*with > 1.0) != (without > 1.0);
+        let with = self.part_with_own_weight.filter(adds);
+        let with = with.map_or_else(String::new, |with| format!(", {} with it", percent(with)));
+        format!(" without its own weight{with}")
     }
 }
 

@@ -37,17 +37,29 @@ impl Warning {
             "energy-account" => "energy that does not add up",
             crate::made_energy::ENERGY_MADE => "energy made at contacts",
             crate::taken_energy::ENERGY_TAKEN => "energy taken by the scheme",
-            "yield" => "stress beyond the yield strength",
+            YIELD => "stress beyond the yield strength",
             HORIZON => "no prediction up to the end",
             "ended" => "an early end",
-            "scene" => "the scene",
+            "scene" => self.finding().filter(|of| of.len() <= SHORT).unwrap_or("the scene"),
             other => other,
         }
     }
+
+    /// What was found in a scene, without the file and the place, and without what would help.
+    fn finding(&self) -> Option<&str> {
+        let (_, from_file) = self.text.lines().next()?.split_once(": ")?;
+        Some(from_file.split_once(": ")?.1)
+    }
 }
+
+/// A finding of a scene of up to so many bytes says itself what it is about.
+const SHORT: usize = 90;
 
 /// The kind of the warning that a motion can be told up to a time before its end only.
 pub const HORIZON: &str = "horizon";
+
+/// The kind of the warning that a beam's stress passes its yield strength: of all steps the largest is told, at the end.
+pub const YIELD: &str = "yield";
 
 /// The warnings of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -71,6 +83,20 @@ impl WarningLog {
             count if count <= TOLD => Some(text()),
             count if count.ilog10() > (count - 1).ilog10() => Some(format!("{} ({count} times so far)", text())),
             _ => None,
+        }
+    }
+
+    /// Enters a warning of something of which the largest counts, to be told at the end: its text is made if it is `largest` so far, and
+    /// takes the place of the one before.
+    pub fn enter_largest(&mut self, code: &'static str, t: f64, largest: bool, text: impl FnOnce() -> String) {
+        match self.warnings.iter_mut().find(|warning| warning.code == code) {
+            Some(known) => {
+                known.count += 1;
+                if largest {
+                    known.text = text();
+                }
+            }
+            None => self.warnings.push(Warning { code: code.into(), count: 1, first_t: Some(t), text: text() }),
         }
     }
 
@@ -100,6 +126,28 @@ mod tests {
         }
         let told: Vec<_> = log.warnings().iter().map(|warning| (warning.text.as_str(), warning.count)).collect();
         assert_eq!(told, [("al is not used", 1), ("stone is not used", 1)]);
+    }
+
+    #[test]
+    fn a_short_finding_of_a_scene_is_its_own_subject() {
+        let mut log = WarningLog::default();
+        log.enter_finding(
+            "scene",
+            "warning: a.toml:5:1: material.steel: this material is not used\n  help: use it".to_owned(),
+        );
+        log.enter_finding("scene", format!("warning: a.toml:5:1: contact.a: {}", "long ".repeat(40)));
+        let subjects: Vec<&str> = log.warnings().iter().map(Warning::subject).collect();
+        assert_eq!(subjects, ["material.steel: this material is not used", "the scene"]);
+    }
+
+    #[test]
+    fn of_a_warning_of_the_largest_one_text_is_left() {
+        let mut log = WarningLog::default();
+        for (k, (value, largest)) in [(3, true), (5, true), (4, false)].into_iter().enumerate() {
+            log.enter_largest("yield", k as f64, largest, || value.to_string());
+        }
+        let told: Vec<_> = log.warnings().iter().map(|of| (of.text.as_str(), of.count, of.first_t)).collect();
+        assert_eq!(told, [("5", 3, Some(0.0))]);
     }
 
     #[test]

@@ -51,6 +51,7 @@ pub mod number_table;
 mod opening;
 pub mod output_size;
 mod overlap;
+pub mod physical;
 pub mod pile;
 mod placement;
 pub mod preview;

@@ -63,6 +63,16 @@ fn mesh_frequency(beam: &Beam) -> Option<f64> {
     modes.circular_frequencies().get(modes.rigid()).copied()
 }
 
+/// The first elastic frequency of a beam in the model, Hz; unknown where it has no closed form and more elements than `most`.
+pub(crate) fn model_frequency(beam: &Beam, basis: Option<&ModalBasis>, most: usize) -> Option<f64> {
+    let circular = match basis {
+        Some(basis) => basis.circular_frequencies().get(basis.rigid()).copied(),
+        None if beam.elements() > most => beam.spec().circular_frequency(1).ok(),
+        None => mesh_frequency(beam),
+    };
+    circular.map(|omega| omega / TAU)
+}
+
 /// The first elastic frequency of a beam, Hz, in the model and exactly, and whether the latter is
 /// that of the continuous beam; otherwise it is that of a finer mesh.
 pub(crate) fn first_frequency(beam: &Beam, basis: Option<&ModalBasis>) -> Option<(MeshComparison, bool)> {

@@ -49,6 +49,8 @@ pub struct BeamPreview {
     pub supports: [&'static str; 2],
     /// Supports between the ends.
     pub inner_supports: usize,
+    /// What it rests on between them and what it carries, in words.
+    pub furniture: Vec<String>,
     /// Its axial model; `None` without one.
     pub axial: Option<&'static str>,
     /// First elastic frequency, Hz: in the model, and without the error of its mesh.
@@ -185,6 +187,7 @@ impl BeamPreview {
             theory: wording::theory(beam),
             supports: spec.supports.map(wording::support),
             inner_supports: spec.inner_supports.len(),
+            furniture: wording::furniture(spec),
             axial: match spec.axial {
                 Axial::Held => Some("held along its axis, stretched by deflection"),
                 Axial::Elastic { .. } => Some("elastic along its axis"),

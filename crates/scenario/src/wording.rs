@@ -1,9 +1,9 @@
 //! Wording of messages: that of every document, and of beams and loads.
 
 use crate::scene::{BeamScene, LoadKind, Scene};
-use teeter_beam::Support;
+use teeter_beam::{BeamSpec, Hold, Support};
 use teeter_integrator::WBackend;
-use teeter_text::readable::with_unit;
+use teeter_text::readable::{shortest, with_unit};
 
 pub use teeter_text::wording::{bytes, duration, expected};
 
@@ -17,6 +17,41 @@ pub fn support(support: Support) -> &'static str {
         Support::Elastic { .. } => "elastic",
         _ => "free",
     }
+}
+
+/// How a support holds a beam: its word, or its springs and dashpots.
+#[must_use]
+pub fn held(of: Support) -> String {
+    let Support::Elastic { deflection, rotation } = of else { return support(of).to_owned() };
+    let parts = [
+        (deflection, "held", "", ["N/m", "N s/m"]),
+        (rotation, "no rotation", "rotational ", ["N m/rad", "N m s/rad"]),
+    ];
+    let told = parts.into_iter().flat_map(|(hold, fixed, kind, units)| match hold {
+        Hold::Fixed => vec![fixed.to_owned()],
+        Hold::Spring { stiffness, damping } => {
+            let sizes = [("spring", stiffness), ("dashpot", damping)].into_iter().zip(units);
+            let given = sizes.filter(|((_, size), _)| *size != 0.0);
+            given.map(|((what, size), unit)| format!("{kind}{what} of {}", with_unit(size, unit))).collect()
+        }
+        _ => Vec::new(),
+    });
+    told.collect::<Vec<_>>().join(" and ")
+}
+
+/// What a beam rests on between its ends and what it carries, each in words.
+#[must_use]
+pub fn furniture(spec: &BeamSpec) -> Vec<String> {
+    let at = |x: f64| with_unit(x, "m");
+    let inner = spec.inner_supports.iter().map(|inner| format!("{} at {}", held(inner.support), at(inner.x)));
+    let foundations = spec.foundations.iter().map(|of| {
+        let damping =
+            if of.damping == 0.0 { String::new() } else { format!(" and {}", with_unit(of.damping, "N s/m²")) };
+        let stiffness = with_unit(of.stiffness, "N/m²");
+        format!("foundation of {stiffness}{damping} from {} to {}", at(of.from), at(of.to))
+    });
+    let masses = spec.lumps.iter().map(|lump| format!("mass of {} kg at {}", shortest(lump.mass, 4), at(lump.x)));
+    inner.chain(foundations).chain(masses).collect()
 }
 
 /// How the matrices of a beam are factorised, in words.

@@ -18,6 +18,13 @@ impl SectionForces {
     /// each. `None` where no section has a modulus.
     #[must_use]
     pub fn largest_stress(&self, beam: &Beam) -> Option<PeakStress> {
+        self.largest_stress_beside(beam, None)
+    }
+
+    /// The same where the bending moments of `other`, such as those of a load that is left out of these, come on top; its loads may
+    /// not lie inside the elements, as the beam's own weight doesn't.
+    #[must_use]
+    pub fn largest_stress_beside(&self, beam: &Beam, other: Option<&Self>) -> Option<PeakStress> {
         let mut largest: Option<PeakStress> = None;
         let mut see = |e: usize, x: f64, moment: f64| {
             if let Some(stress) = self.stress_in(beam, e, moment)
@@ -27,12 +34,13 @@ impl SectionForces {
             }
         };
         for e in 0..beam.elements() {
+            let others = other.map_or([0.0; 2], |other| other.ends(e).map(|end| end.moment));
             let [left, right] = self.ends(e);
-            see(e, beam.mesh.x[e], left.moment);
-            see(e, beam.mesh.x[e + 1], right.moment);
+            see(e, beam.mesh.x[e], left.moment + others[0]);
+            see(e, beam.mesh.x[e + 1], right.moment + others[1]);
         }
         for &(e, xi, _, couple) in &self.inside {
-            let moment = self.moment_in(beam, e, xi);
+            let moment = self.moment_in(beam, e, xi) + other.map_or(0.0, |other| other.moment_in(beam, e, xi));
             let x = beam.mesh.x[e] + xi * beam.elements[e].length;
             // Left of a couple it has not come on yet.
             see(e, x, moment);

@@ -82,7 +82,7 @@ pub(crate) fn told(left_out: &[LeftOut]) -> String {
 }
 
 /// A number with one digit as a power of ten: `3 × 10⁻¹²`.
-fn power_of_ten(x: f64) -> String {
+pub(crate) fn power_of_ten(x: f64) -> String {
     const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let text = format!("{x:.0e}");
     let Some((digit, power)) = text.split_once('e').filter(|(_, power)| *power != "0") else {

@@ -172,8 +172,9 @@ impl Plots<'_> {
 
     fn portrait(&self, portrait: &Portrait) -> Figure {
         let part = |line: &PortraitLine, label: &str, points: std::ops::Range<usize>| {
+            let alone = line.alone.get(points.clone()).unwrap_or_default().to_vec();
             let points = line.x[points.clone()].iter().copied().zip(line.v[points].iter().copied());
-            Series::line(label, points).number(line.number).over(line.over)
+            Series::line(label, points).number(line.number).over(line.over).alone_at(alone)
         };
         // What is pale stays behind.
         let pale = portrait.lines.iter().flat_map(|line| {

@@ -63,7 +63,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("verdict", verdict(summary)),
         ("subtitle", subtitle(summary)),
         ("warnings", warnings(summary)),
-        ("tiles", tiles::tiles(&values, summary, &panels.units)),
+        ("tiles", tiles::tiles(&values, summary)),
         ("residual", scientific(summary.energy.largest_residual)),
         ("notdrawn", not_drawn(&panels)),
         ("shapes", beams::shapes(recorder, &panels.units)),
@@ -71,6 +71,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("borne", beams::borne(recorder, &panels.units, summary)),
         ("thrust", thrust::section(recorder, panels.many_at_end())),
         ("rocking", rocking::rocking(&half_cycles_and_left_out(recorder, summary), recorder, summary.dt)),
+        ("physical", model::physical(&recorder.scenery.physical)),
         ("model", model::model(summary)),
         ("numbers", tiles::numbers(&values, summary)),
         ("settings", escaped(scene_toml)),
@@ -265,7 +266,7 @@ mod tests {
                 ["title", "style", "script", "data", "verdict", "subtitle", "warnings", "tiles", "residual", "rocking"];
             assert!(
                 known.contains(&name)
-                    || ["borne", "model", "notdrawn", "numbers", "records", "settings", "shapes", "thrust"]
+                    || ["borne", "model", "notdrawn", "numbers", "physical", "records", "settings", "shapes", "thrust"]
                         .contains(&name),
                 "{name}"
             );

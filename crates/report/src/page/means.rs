@@ -136,6 +136,11 @@ impl Filter {
     /// A quantity at the borders of the buckets without fast vibrations. `None` unless it rings: strays from what is
     /// left, and crosses it at least once in a period, on average. A slower vibration is seen as it is.
     pub(super) fn ringing(&self, curves: &Curves, column: usize) -> Option<Vec<f64>> {
+        self.crossing(curves, column, 1.0)
+    }
+
+    /// The same where it has to cross what is left so many times in a period.
+    fn crossing(&self, curves: &Curves, column: usize, times: f64) -> Option<Vec<f64>> {
         let borders = curves.borders();
         if !is_long(&borders) || self.period <= 0.0 {
             return None;
@@ -160,18 +165,24 @@ impl Filter {
             crossings += 2 * usize::from((pair[1] - pair[0]).abs() > RINGS * drift.max(STRAY * largest));
         }
         let periods = (borders[borders.len() - 1] - borders[0]) / self.period;
-        (far as f64 > LEAST * own.len() as f64 && crossings as f64 >= periods).then_some(means)
+        (far as f64 > LEAST * own.len() as f64 && crossings as f64 >= times * periods).then_some(means)
     }
 
     /// Through the largest values of a quantity that rings in every period, but not across jolts, in straight lines from one to the next, at the borders
     /// of the buckets: what stays of one without a sign, as a stress, of which a mean would say nothing. It rises from a jolt to the largest
-    /// value after it, as what is held there would look like a load that jumps. `None` unless it rings.
-    pub(super) fn through_the_largest(&self, curves: &Curves, column: usize) -> Option<Vec<f64>> {
-        self.ringing(curves, column)?;
+    /// value after it, as what is held there would look like a load that jumps. In a period in which it goes up and down no more than a slow vibration
+    /// does, it is the curve itself. `None` unless what it is the size of rings: as `rings` says, or, where
+    /// that isn't known, if it crosses its mean twice in a period, as the size of what swings about zero does so twice as often as that.
+    pub(super) fn through_the_largest(&self, curves: &Curves, column: usize, rings: Option<bool>) -> Option<Vec<f64>> {
+        if !is_long(&curves.borders()) || !rings.unwrap_or_else(|| self.crossing(curves, column, 2.0).is_some()) {
+            return None;
+        }
         let borders = curves.borders();
         let values = curves.curve(column);
+        let most = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let highest: Vec<f64> = values[1..].chunks_exact(2).map(|pair| pair[0].max(pair[1])).collect();
         let mut largest = vec![0.0; borders.len()];
+        let mut rings_anywhere = false;
         for [begin, end] in self.stretches([0, borders.len() - 1]) {
             let begins = begin + usize::from(begin > 0);
             // What rang before a jolt rings on.
@@ -183,6 +194,12 @@ impl Filter {
                 // A short rest, which may hold no peak, belongs to the period before it.
                 let is_rest = borders[end] - borders[after.min(end)] < 0.5 * self.period;
                 let after = if is_rest { end } else { after.clamp(first + 1, end) };
+                if turns(&values[2 * first..=2 * after], STRAY * most) <= SLOW_TURNS {
+                    nodes.extend((first..after).map(|k| (borders[k + 1], values[2 * k + 2])));
+                    first = after;
+                    continue;
+                }
+                rings_anywhere = true;
                 let (at, most) = (first..after)
                     .map(|k| (k, highest[k]))
                     .fold((first, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
@@ -195,8 +212,29 @@ impl Filter {
                 largest[place] = interpolated(&nodes, borders[place]);
             }
         }
-        Some(largest)
+        rings_anywhere.then_some(largest)
     }
+}
+
+/// How often a slow vibration turns in a period at most, as a size at its largest and at 0.
+const SLOW_TURNS: usize = 2;
+
+/// How often a curve turns round, by more than this.
+fn turns(values: &[f64], by: f64) -> usize {
+    let (mut turns, mut rises) = (0, None);
+    let mut last = values.first().copied().unwrap_or(0.0);
+    for value in values {
+        match rises {
+            // Further on the same way.
+            Some(up) if (*value > last) == up => last = *value,
+            _ if (value - last).abs() > by => {
+                turns += usize::from(rises.is_some());
+                (rises, last) = (Some(*value > last), *value);
+            }
+            _ => {}
+        }
+    }
+    turns
 }
 
 /// Between two of these points, in the order of x, on a straight line; before the first and after the last one their values.
@@ -293,10 +331,47 @@ mod tests {
         let stress = |t: f64| (1.0 - 0.5 * t) * (2.0 * std::f64::consts::PI * 400.0 * t).sin().abs();
         let mut curves = Curves::new(400, 0.0, vec![0.0], 0);
         (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[stress(t)]));
-        let largest = plain(&curves).through_the_largest(&curves, 0).unwrap();
+        let largest = plain(&curves).through_the_largest(&curves, 0, None).unwrap();
         assert_eq!(largest.len(), curves.borders().len());
         for (largest, t) in largest.iter().zip(curves.borders()) {
             assert!((largest - (1.0 - 0.5 * t)).abs() < 0.02, "{largest} at {t}");
+        }
+    }
+
+    #[test]
+    fn a_stress_is_a_curve_where_its_moment_is_one() {
+        // 9 and 60 Hz in 1 s, with a longest period of 20 ms: the size has twice the frequency.
+        for (frequency, rings) in [(9.0, false), (20.0, false), (60.0, true)] {
+            let mut curves = Curves::new(10_000, 0.0, vec![0.0, 0.0], 0);
+            (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| {
+                let moment = (2.0 * std::f64::consts::PI * frequency * t).sin();
+                curves.enter(t, &[moment, moment.abs()]);
+            });
+            let filter = plain(&curves);
+            assert_eq!(filter.ringing(&curves, 0).is_some(), rings, "{frequency}");
+            assert_eq!(filter.through_the_largest(&curves, 1, None).is_some(), rings, "{frequency}");
+            assert_eq!(filter.through_the_largest(&curves, 1, Some(false)), None, "{frequency}");
+        }
+    }
+
+    #[test]
+    fn a_stress_is_drawn_through_its_largest_values_only_while_it_rings() {
+        let tau = 2.0 * std::f64::consts::PI;
+        let stress = |t: f64| {
+            let rings = if t < 0.6 { 3.0 * (tau * 400.0 * t).sin() } else { 0.0 };
+            (4.0 + 4.0 * (tau * 3.0 * t).sin() + rings).abs()
+        };
+        let mut curves = Curves::new(10_000, 0.0, vec![stress(0.0)], 0);
+        (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[stress(t)]));
+        let largest = plain(&curves).through_the_largest(&curves, 0, Some(true)).unwrap();
+        for (largest, t) in largest.iter().zip(curves.borders()) {
+            let slow = 4.0 + 4.0 * (tau * 3.0 * t).sin();
+            match t {
+                // Two of its values are 20 ms apart, in which what is slow changes by 1.5.
+                t if t < 0.58 => assert!((largest - slow - 3.0).abs() < 2.0, "{largest} at {t}"),
+                t if t > 0.62 => assert!((largest - slow).abs() < 1e-3, "{largest}, not {slow} at {t}"),
+                _ => {}
+            }
         }
     }
 
@@ -387,7 +462,7 @@ mod tests {
         let curves = struck(&impacts, ringing);
         let filter = Filter::of(&curves, &jolts(&impacts), &[curves.means(0)]);
         let means = filter.ringing(&curves, 0).unwrap();
-        let largest = filter.through_the_largest(&curves, 0).unwrap();
+        let largest = filter.through_the_largest(&curves, 0, None).unwrap();
         for ((t, mean), largest) in curves.borders().into_iter().zip(means).zip(largest) {
             if t < impacts[0] {
                 assert_eq!([mean, largest], [0.0; 2], "at {t}");
@@ -401,22 +476,22 @@ mod tests {
         assert_eq!(filter.told(), "20 ms, not across impacts");
     }
 
-    /// A vibration that grows from the impact on reaches its largest value 10 ms later: what is strong does no sooner, nor is it held.
+    /// A vibration that grows from the impact on reaches its largest value 10 ms later: what is strong does no sooner, nor is it held, but follows what is slow
+    /// of it, also where other periods ring.
     #[test]
     fn the_largest_values_after_an_impact_are_no_step() {
         let tau = 2.0 * std::f64::consts::PI;
-        let stress = |t: f64| (157.0 * (tau * 25.0 * (t - 0.2)).sin()).abs() + 3.0 * (tau * 900.0 * t).sin().abs();
-        let curves = struck(&[0.2], stress);
+        let slow = |t: f64| (157.0 * (tau * 25.0 * (t - 0.2)).sin()).abs();
+        let rings = |t: f64| if t > 0.6 { 30.0 } else { 3.0 } * (tau * 900.0 * t).sin().abs();
+        let curves = struck(&[0.2], |t| slow(t) + rings(t));
         let filter = Filter::of(&curves, &jolts(&[0.2]), &[]);
-        let largest = filter.through_the_largest(&curves, 0).unwrap();
-        let at = |t: f64| largest[curves.borders().partition_point(|border| *border < t)];
-        assert!(
-            at(0.2005) < 30.0 && at(0.205) < 120.0 && at(0.21) > 155.0,
-            "{} {} {}",
-            at(0.2005),
-            at(0.205),
-            at(0.21)
-        );
+        let largest = filter.through_the_largest(&curves, 0, Some(true)).unwrap();
+        for t in [0.2005, 0.205, 0.21] {
+            let place = curves.borders().partition_point(|border| *border < t);
+            let exact = slow(curves.borders()[place]);
+            // A bucket has sixteen steps, of which the curve has the extremes.
+            assert!((largest[place] - exact).abs() < 0.1 * 157.0, "{}, not {exact} at {t}", largest[place]);
+        }
     }
 
     #[test]

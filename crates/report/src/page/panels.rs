@@ -143,6 +143,8 @@ pub(crate) struct PortraitLine {
     pub(crate) strong: Range<usize>,
     /// On how many others it lies.
     pub(crate) over: u8,
+    /// Then, by points, where it lies on none of them.
+    pub(crate) alone: Vec<bool>,
 }
 
 /// All that is drawn over time of a run, but contact forces, and what isn't.

@@ -156,6 +156,8 @@ pub struct PageRecorder {
     closed: Vec<Closed>,
     /// By blocks: whether they feel the impacts of a step. Memory.
     struck: Vec<bool>,
+    /// The points that have an impulse in the part of a step that is looked at.
+    struck_points: Vec<usize>,
     /// By contact points: for how long of a step they stick and slip, s; and those that do. Memory.
     lasting: Vec<[f64; 2]>,
     pressing: Vec<usize>,
@@ -220,6 +222,7 @@ impl PageRecorder {
             closings: ClosingMonitor::default(),
             closed: Vec::new(),
             struck: Vec::new(),
+            struck_points: Vec::new(),
             lasting: vec![[0.0; 2]; points],
             pressing: Vec::new(),
             scenery,
@@ -403,6 +406,7 @@ impl PageRecorder {
             self.find_struck(part.contacts, part.end, strikers);
             let is_impact = closed.iter().any(|of| of.closing == Closing::Impact && of.t == part.end);
             let mut before = None;
+            self.struck_points.clear();
             for contact in part.contacts {
                 let Some((pair, point)) = place(&self.layout, contact) else { continue };
                 let Some(drawn) = self.scenery.contacts.get(pair) else { continue };
@@ -427,6 +431,15 @@ impl PageRecorder {
                 before = Some(pair);
                 let slip = slip(contact, part.duration, part.balance);
                 let (point, state) = (drawn.first + point, contact.state());
+                // A point that touches two pieces of a profile, or two sides, has no more time than that.
+                let of = match of {
+                    Of::Impact { .. } if self.struck_points.contains(&point) => Of::Impact { lasting: 0.0 },
+                    Of::Reclosure { .. } if self.struck_points.contains(&point) => Of::Reclosure { lasting: 0.0 },
+                    of => of,
+                };
+                if of != Of::Force {
+                    self.struck_points.push(point);
+                }
                 self.kept.curves.add(point, [contact.p[0], contact.p[1]], of, ContactState::Open, slip);
                 if let Some(lasting) = self.lasting.get_mut(point).filter(|_| state != ContactState::Open) {
                     self.pressing.extend((*lasting == [0.0; 2]).then_some(point));

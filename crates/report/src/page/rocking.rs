@@ -95,7 +95,7 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LeftOutCycles {
     pub(crate) body: String,
-    /// How many there are, and near how many a corner landed.
+    /// How many crossings of it the summary has, and near how many a corner landed.
     pub(crate) count: usize,
     pub(crate) hits: usize,
 }
@@ -184,6 +184,8 @@ pub(crate) fn half_cycles_and_left_out(
         let count = cycles.len() - own;
         if 2 * hits < count && all_kept && recorder.scenery.touches_rigidly(number) {
             cycles.truncate(own);
+            // All of them, as the terminal and the summary count them.
+            let count = summary.crossings.iter().filter(|crossing| crossing.body == block.name).count();
             left_out.push(LeftOutCycles { body: block.name.clone(), count, hits });
         }
     }

@@ -4,12 +4,15 @@ use super::bands::BAND_COLUMNS;
 use super::recorder::{BLOCK_COLUMNS, ENERGIES, MOST_CURVES, MOTION_COLUMNS};
 use super::{DIGITS, rounded};
 use crate::driven::Driven;
+use crate::own_weight;
 use crate::probe::Probe;
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::sync::Arc;
-use teeter_beam::Axial;
+use teeter_beam::{Axial, Hold, Support};
 use teeter_detect::OnSide;
 use teeter_integrator::BeamFace;
+use teeter_scenario::physical::{self, PhysicalTable};
 use teeter_scenario::scene::{self, Crowd, Display, ForceScene, LoadScene, RecordScene, Scene, SupportingBody};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::wording;
@@ -45,11 +48,20 @@ pub(crate) struct BeamDrawn {
     pub(crate) supports: [&'static str; 2],
     /// Supports between the ends: where, and how.
     pub(crate) inner: Vec<(f64, &'static str)>,
+    /// Foundations: from where to where, m.
+    pub(crate) foundations: Vec<(f64, f64)>,
+    /// Masses that it carries: where.
+    pub(crate) masses: Vec<f64>,
+    /// Of its supports at the ends and between, in their order, whether they have dashpots.
+    pub(crate) dashpots: Vec<bool>,
     /// Whether its right end is held along the axis.
     pub(crate) held: bool,
     /// Whether a support or a foundation carries it.
     #[serde(skip)]
     pub(crate) is_carried: bool,
+    /// Whether the scene leaves out its own weight.
+    #[serde(skip)]
+    pub(crate) is_without_weight: bool,
     /// Points along the span, evenly spread.
     pub(crate) points: usize,
     #[serde(skip)]
@@ -182,6 +194,9 @@ pub(crate) struct Scenery {
     /// with supports of their own may carry them.
     #[serde(skip)]
     pub(crate) from_ground: [bool; 2],
+    /// Sizes, masses, sections, friction.
+    #[serde(skip)]
+    pub(crate) physical: Vec<PhysicalTable>,
     /// Units of axes, width of figures.
     #[serde(skip)]
     pub(crate) display: Display,
@@ -232,6 +247,11 @@ const PIECES: usize = 40;
 /// Most pieces of a beam's line.
 const MOST_PIECES: usize = 80;
 
+/// Whether a support has a dashpot across the axis.
+fn has_dashpot(support: Support) -> bool {
+    matches!(support, Support::Elastic { deflection: Hold::Spring { damping, .. }, .. } if damping > 0.0)
+}
+
 /// The word for an end that nothing holds.
 pub(crate) const FREE: &str = "free";
 
@@ -273,6 +293,13 @@ impl Scenery {
         first.is_some_and(carries) && on.all(|other| Some(other) == first) && !self.touches_blocks(block)
     }
 
+    /// What is said of forces in these beams: nothing unless they are without the own weight of some.
+    pub(crate) fn without_weight(&self, beams: impl Iterator<Item = usize>) -> Option<String> {
+        let shown: BTreeSet<usize> = beams.collect();
+        let without = shown.iter().map(|beam| &self.beams[*beam]).filter(|beam| beam.is_without_weight);
+        own_weight::told(&without.map(|beam| beam.name.as_str()).collect::<Vec<_>>(), shown.len())
+    }
+
     pub(crate) fn new(scene: &Scene, layout: &Layout) -> Self {
         let blocks = scene.blocks.iter().map(|block| BlockDrawn {
             name: block.name.clone(),
@@ -308,8 +335,15 @@ impl Scenery {
                     .iter()
                     .map(|inner| (inner.x, wording::support(inner.support)))
                     .collect(),
+                foundations: drawn.spec.foundations.iter().map(|of| (of.from, of.to)).collect(),
+                masses: drawn.spec.lumps.iter().map(|lump| lump.x).collect(),
+                dashpots: {
+                    let inner = drawn.spec.inner_supports.iter().map(|inner| inner.support);
+                    drawn.spec.supports.into_iter().chain(inner).map(has_dashpot).collect()
+                },
                 held: matches!(drawn.spec.axial, Axial::Held | Axial::Elastic { held: [_, true], .. }),
                 is_carried,
+                is_without_weight: own_weight::is_left_out(scene, drawn),
                 points: pieces + 1,
                 places: (0..=pieces).map(|k| at(span * (k as f64 / pieces as f64))).collect(),
                 middle: at(0.5 * span),
@@ -400,6 +434,7 @@ impl Scenery {
             driven,
             from_ground,
             display: scene.display,
+            physical: physical::tables(scene, layout),
             weight_energy: {
                 let g = scene.gravity[0].hypot(scene.gravity[1]);
                 scene.blocks.iter().map(|block| block.mass() * g * block.radius()).filter(|e| e.is_finite()).sum()

@@ -69,12 +69,22 @@ pub(super) fn envelopes(recorder: &PageRecorder, units: &Units, id: &str) -> Opt
         }
         let y = lines.iter().flat_map(Series::points).map(|point| point.1).chain([0.0]);
         let axis = Axis::around(format!("{what} ({prefix}{unit_of})"), y, 1e-6 * of(shear) * factor);
-        let note = after_impacts(recorder).filter(|_| panels.is_empty()).map(str::to_owned);
+        let peaks = after_impacts(recorder).map(str::to_owned);
+        let notes: Vec<String> = peaks.into_iter().chain(without_weight(recorder)).collect();
+        let note = (!notes.is_empty() && panels.is_empty()).then(|| notes.join("; "));
         panels.push(Panel::new(axis).with(lines).telling_apart().note(note));
     }
     let x = Axis::between(format!("Place along the beam x ({})", unit.word()), 0.0, span * unit.per_metre());
     let title = "Bending moment and transverse force over the span, least and largest of all steps";
     (!panels.is_empty()).then(|| panels.into_iter().fold(Figure::new(id, title, x), Figure::panel))
+}
+
+/// What is said of the own weight of the beams that have envelopes.
+fn without_weight(recorder: &PageRecorder) -> Option<String> {
+    let beams = recorder.scenery.beams.iter().enumerate();
+    let shown = beams
+        .filter(|(_, beam)| recorder.beams.iter().any(|record| record.beam == beam.name && record.envelope.is_some()));
+    recorder.scenery.without_weight(shown.map(|(number, _)| number))
 }
 
 /// Shapes in one panel: the start, the end, the largest deflection, and so many more peaks.

@@ -6,7 +6,7 @@ use crate::all_digits::{all_digits, with_all_digits};
 use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
 use teeter_integrator::State;
-use teeter_scenario::readable::{like, with_unit};
+use teeter_scenario::readable::{like, shortest, with_unit};
 use teeter_scenario::scene::{BlockScene, Scene};
 
 /// Blocks up to this many are told one by one.
@@ -26,32 +26,37 @@ pub(crate) fn headline(
         }
         many => many::all(scene, many, state.t),
     };
-    let borne = beams.iter().filter_map(|beam| Some((beam.part_of_yield_strength?, beam)));
-    if let Some((part, beam)) = borne.max_by(|a, b| a.0.total_cmp(&b.0)) {
-        text.push_str(&format!("; `{}` was stressed to {} of its yield strength", beam.beam, percent(part, verdict)));
+    let judged = beams.iter().filter_map(|beam| Some((beam.decisive_part()?, beam)));
+    if let Some((_, beam)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        let part = beam.part_of_yield_strength.unwrap_or_default();
+        let (part, weight) = (percent(part, verdict), beam.about_weight(|part| percent(part, verdict)));
+        text.push_str(&format!("; `{}` was stressed to {part} of its yield strength{weight}", beam.beam));
     } else if verdict.is_empty() {
         let known = beams.iter().filter_map(|beam| Some((beam.largest_stress?, beam)));
         if let Some((largest, beam)) = known.max_by(|a, b| a.0.stress.total_cmp(&b.0.stress)) {
             let (stress, x) = (with_unit(largest.stress, "Pa"), with_unit(largest.x, "m"));
             text.push_str(&format!(
-                "; the largest stress is {stress} in `{}` at x = {x}, {}",
+                "; the largest stress is {stress} in `{}` at x = {x}, {}{}",
                 beam.beam,
-                time(largest.t)
+                time(largest.t),
+                if beam.is_without_weight { ", without its own weight" } else { "" }
             ));
         }
     }
     text
 }
 
-/// A part of the yield strength in percent. With blocks it is the stress of impacts, which depends on step and elements: `about`.
+/// A part of the yield strength in percent, never one that hides on which side of it the stress is. With blocks it is the stress of impacts, which
+/// depends on step and elements: `about`.
 pub(crate) fn percent(part: f64, verdict: &[BodyVerdict]) -> String {
     let (digits, cap, about) = if verdict.is_empty() { (3, 99.9, "") } else { (2, 99.0, "about ") };
-    // Which side of 100 % it is on isn't rounded away.
-    let (percent, digits) = if part < 1.0 { ((100.0 * part).min(cap), digits) } else { (100.0 * part, 3) };
-    if percent > 100.0 && percent < 100.5 {
-        return "over 100 %".to_owned();
+    if part < 1.0 {
+        return format!("{about}{} %", shortest((100.0 * part).min(cap), digits));
     }
-    format!("{about}{} %", teeter_scenario::readable::shortest(percent, digits))
+    match shortest(100.0 * part, 3).as_str() {
+        "100" if part > 1.0 => "just over 100 %".to_owned(),
+        percent => format!("{about}{percent} %"),
+    }
 }
 
 /// What became of beams without blocks: how far they deflected, in the order given.
@@ -376,14 +381,12 @@ fn is_told(scene: &Scene, of: &BodyVerdict, way: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::percent;
 
     #[test]
-    fn a_part_of_a_limit_is_not_rounded_to_the_other_side_of_it() {
-        for (part, told) in
-            [(0.123, "12.3 %"), (0.9999, "99.9 %"), (1.0, "100 %"), (1.002, "over 100 %"), (1.047, "105 %")]
-        {
-            assert_eq!(percent(part, &[]), told, "{part}");
-        }
+    fn a_part_of_a_strength_is_on_its_side_of_it() {
+        assert_eq!([0.1234, 0.997, 0.9999].map(|part| percent(part, &[])), ["12.3 %", "99.7 %", "99.9 %"]);
+        let over = [1.0, 1.0004, 1.0481, 2.5].map(|part| percent(part, &[]));
+        assert_eq!(over, ["100 %", "just over 100 %", "105 %", "250 %"]);
     }
 }

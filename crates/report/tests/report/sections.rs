@@ -5,7 +5,7 @@ use crate::table::{column, columns_of};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use teeter_report::{EndedWord, Results, RunRecorder, Summary, envelopes, figures, render};
+use teeter_report::{EndedWord, Results, RunRecorder, Summary, envelopes, figures, render, shortest, with_digits};
 use teeter_scenario::simulation::Simulation;
 
 struct Run {
@@ -125,7 +125,13 @@ fn a_static_start_is_written_as_statics_has_it() {
     let part = run.summary["beams"][0]["part_of_yield_strength"].as_f64().unwrap();
     assert!((part - largest["stress"].as_f64().unwrap() / 30e6).abs() < 1e-14 && part > 1.0);
     let warnings = run.summary["warnings"].as_array().unwrap();
-    assert!(warnings.iter().any(|warning| warning["code"] == "yield"), "{warnings:?}");
+    // One, with the largest of all steps.
+    let told: Vec<&Value> = warnings.iter().filter(|warning| warning["code"] == "yield").collect();
+    let most = run.summary["beams"][0]["largest_stress_with_own_weight"]["stress"].as_f64().unwrap();
+    let [warning] = told[..] else { panic!("{warnings:?}") };
+    assert!(warning["count"].as_u64().unwrap() > 1);
+    let text = warning["text"].as_str().unwrap();
+    assert!(text.contains(&format!("up to {} of 30 MPa", with_digits(most, "Pa", 4))), "{most}: {text}");
 
     let names: Vec<&str> = run.figures.iter().map(|(name, _)| name.as_str()).collect();
     assert!(names.contains(&"section_forces.svg") && names.contains(&"envelopes.svg"), "{names:?}");
@@ -228,7 +234,7 @@ fn reactions_that_ring_are_pale_behind_their_means() {
     assert!((start(&means) / start(&raw) - 1.0).abs() < 0.05, "{} {}", start(&means), start(&raw));
     // A size has no mean that carries, but a largest value in each period.
     let stress = panel(&page, "section-stress").unwrap();
-    assert_eq!(stress["note"], note("through the largest of every"));
+    assert_eq!(stress["note"], note("where it rings, through the largest of every"));
     let (pale, strong): (Vec<_>, Vec<_>) =
         stress["series"].as_array().unwrap().iter().partition(|line| line["raw"] == true);
     assert!(pale.len() == strong.len() && (range(&strong) / range(&pale) - 1.0).abs() < 1e-3, "{}", range(&strong));
@@ -276,4 +282,51 @@ fn what_is_largest_all_along_is_so_from_the_start() {
     let stress = run.summary.beams[0].largest_stress.unwrap();
     assert_eq!((run.summary.deflections[0].t, stress.t), (0.0, 0.0));
     assert!(run.summary.deflections[0].w < -1e-3 && stress.stress > 1e7);
+}
+
+/// A block at rest at the tip of a cantilever whose own weight alone takes it to 63 % of its yield strength.
+#[test]
+fn a_beam_is_judged_with_the_weight_that_its_model_leaves_out() {
+    let run = |name: &str, weight: bool, span: &str| {
+        let text = format!(
+            "[time]\nend = '50 ms'\nstep = '100 us'\n[material.s]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n\
+             yield_strength = '235 MPa'\n[beam.arm]\nmaterial = 's'\nspan = '{span}'\nwidth = '8 cm'\nthickness = '1.6 cm'\n\
+             elements = 24\nsupports = ['clamped', 'free']\nself_weight = {weight}\nstart = 'static'\nprobes = ['1 m']\n\
+             record = ['moment', 'stress']\nreactions = true\nenvelope = true\n[load.hook]\non = 'arm'\nat = '3 m'\nforce = '-20 N'\n"
+        );
+        run_of(name, text.as_bytes(), &[])
+    };
+    let (without, with) = (run("own-weight-left-out", false, "3.2 m"), run("own-weight", true, "3.2 m"));
+    let [bare, full] = [&without, &with].map(|run| &run.summary["beams"][0]);
+    // M = ρ A g L²/2 + F a of a section of 8 cm × 1.6 cm.
+    let modulus = 0.08 * 0.016 * 0.016 / 6.0;
+    let own = 7850.0 * 0.08 * 0.016 * 9.81 * 3.2 * 3.2 / 2.0 / modulus;
+    let (load, sum) = (60.0 / modulus, own + 60.0 / modulus);
+    let stress = |of: &Value, key: &str| of[key]["stress"].as_f64().unwrap();
+    for (found, exact) in [
+        (stress(bare, "largest_stress"), load),
+        (stress(bare, "largest_stress_with_own_weight"), sum),
+        (stress(full, "largest_stress"), sum),
+    ] {
+        assert!((found / exact - 1.0).abs() < 1e-6, "{found} {exact}");
+    }
+    assert!(full.get("largest_stress_with_own_weight").is_none() && full.get("part_with_own_weight").is_none());
+    let percent = |part: f64| format!("{} %", shortest(100.0 * part, 3));
+    let [bare, sum] = [load / 235e6, sum / 235e6].map(percent);
+    let headline = |run: &Run| run.summary["headline"].as_str().unwrap().to_owned();
+    let told = format!("stressed to {bare} of its yield strength without its own weight, {sum} with it");
+    assert!(headline(&without).ends_with(&told), "{}", headline(&without));
+    assert!(headline(&with).ends_with(&format!("stressed to {sum} of its yield strength")), "{}", headline(&with));
+    // Beside the plots of M and of the reactions, the envelopes and the table.
+    let said = "without the beam\u{2019}s own weight";
+    let count = without.html.matches(said).count();
+    assert!(count >= 4 && !with.html.contains(said), "{count}");
+    // Less than a metre longer it would yield under its own weight, which nothing in the run without it tells.
+    let longer = run("own-weight-yields", false, "4.1 m").summary;
+    let warnings = longer["warnings"].as_array().unwrap();
+    let warning = warnings.iter().find(|warning| warning["code"] == "yield").unwrap()["text"].as_str().unwrap();
+    assert!(warning.contains("with the beam's own weight, which `self_weight = false` leaves out"), "{warning}");
+    let [bare, full] =
+        ["part_of_yield_strength", "part_with_own_weight"].map(|key| longer["beams"][0][key].as_f64().unwrap());
+    assert!(bare < 0.1 && full > 1.0, "{bare} {full}");
 }

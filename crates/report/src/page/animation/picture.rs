@@ -97,6 +97,17 @@ impl<'a> Painter<'a> {
             self.stroke(&path, BEAM, line);
         }
         let size = (SUPPORT * self.view.unit) as f32;
+        let foundations = beam.foundations.iter().map(|(from, to)| [at(from / beam.span), at(to / beam.span)]);
+        let foundations: Vec<_> = foundations.collect();
+        let masses: Vec<_> = beam.masses.iter().map(|x| at(x / beam.span)).collect();
+        for [(left, low, ..), (right, ..)] in foundations {
+            self.foundation([left, right], low, size, line);
+        }
+        for (x, _, middle, _) in masses {
+            if let Some(path) = PathBuilder::from_circle(x, middle, 0.6 * size) {
+                self.fill(&path, INK);
+            }
+        }
         for ((x, low, middle, half), kind, outwards) in supports {
             let mut path = PathBuilder::new();
             match kind {
@@ -118,6 +129,24 @@ impl<'a> Painter<'a> {
             if let Some(path) = path.finish() {
                 self.fill(&path, INK);
             }
+        }
+    }
+
+    /// A row of springs under a beam, on a line.
+    fn foundation(&mut self, [left, right]: [f32; 2], low: f32, size: f32, line: f32) {
+        let count = ((right - left) / (2.0 * size)).round().max(2.0);
+        let mut path = PathBuilder::new();
+        for k in 0..count as usize {
+            let x = left + (k as f32 + 0.5) / count * (right - left);
+            path.move_to(x, low);
+            for (across, down) in [(-0.4, 0.3), (0.4, 0.6), (-0.4, 0.9), (0.4, 1.2), (0.0, 1.5)] {
+                path.line_to(x + across * size, low + down * size);
+            }
+        }
+        path.move_to(left, low + 1.5 * size);
+        path.line_to(right, low + 1.5 * size);
+        if let Some(path) = path.finish() {
+            self.stroke(&path, INK, 0.7 * line);
         }
     }
 

@@ -154,8 +154,10 @@ struct PortraitSeries {
     /// The first point that is drawn strong and the first behind them, if not all are.
     #[serde(skip_serializing_if = "Option::is_none")]
     strong: Option<[usize; 2]>,
-    /// On how many others it lies.
+    /// On how many others it lies, and the points from which on it does so and doesn't by turns, beginning where it does.
     over: u8,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    turns: Vec<usize>,
     t: Column,
     x: Column,
     y: Column,
@@ -267,7 +269,18 @@ pub(super) fn portraits(panels: &Panels) -> Vec<PortraitData> {
                 let [x, y] = [&line.x, &line.v].map(|values| Column::of(values, SEEN));
                 let t = Column::of(&line.t, SEEN_BELOW_PEAKS);
                 let strong = Some([line.strong.start, line.strong.end]).filter(|_| line.strong.len() < line.t.len());
-                PortraitSeries { label: line.label.clone(), index: line.number, strong, over: line.over, t, x, y }
+                let alone = |k: usize| line.alone[k];
+                let turns = (0..line.alone.len()).filter(|k| alone(*k) != (*k > 0 && alone(k - 1))).collect();
+                PortraitSeries {
+                    label: line.label.clone(),
+                    index: line.number,
+                    strong,
+                    over: line.over,
+                    turns,
+                    t,
+                    x,
+                    y,
+                }
             })
             .collect(),
     };

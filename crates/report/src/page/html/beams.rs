@@ -1,11 +1,13 @@
 //! What beams bore: deflected shapes, stress, envelopes, reactions.
 
 use super::rocking::decimals;
+use crate::own_weight;
 use crate::page::content::largest;
-use crate::page::panels::{Measure, Units, after_impacts, length_unit};
+use crate::page::panels::{Units, after_impacts, length_unit, prefix};
 use crate::page::recorder::PageRecorder;
 use crate::page::span;
 use crate::sections::ReactionRange;
+use crate::summary::BorneSummary;
 use crate::verdict::percent;
 use crate::{Summary, shortest, with_digits};
 use std::fmt::Write;
@@ -27,19 +29,33 @@ const UNBOUNDED: &str = "<p class=\"note\">With impacts both depend on the step 
     peak of the transverse force near the contact grows without bound as these shrink. Compare with shorter steps and more elements before it is \
     used.</p>\n";
 
+/// A part of the yield strength in percent, marked where it is beyond that.
+fn judged(part: f64, summary: &Summary) -> String {
+    let class = if part > 1.0 { " class=\"bad\"" } else { "" };
+    format!("<span{class}>{}</span>", percent(part, &summary.verdict))
+}
+
+/// That forces are without the own weight of the beams whose scene leaves it out, where `shown` says that the beam has some.
+fn without_weight(summary: &Summary, shown: impl Fn(&BorneSummary) -> bool) -> Option<String> {
+    let shown: Vec<&BorneSummary> = summary.beams.iter().filter(|beam| shown(beam)).collect();
+    let without: Vec<&str> =
+        shown.iter().filter(|beam| beam.is_without_weight).map(|beam| beam.beam.as_str()).collect();
+    own_weight::told(&without, shown.len())
+}
+
 /// What beams bore: largest stress, reactions, envelopes.
 pub(super) fn borne(recorder: &PageRecorder, units: &Units, summary: &Summary) -> String {
     let mut html = String::new();
     let several = summary.beams.len() > 1;
     let stresses = summary.beams.iter().filter_map(|borne| {
         let largest = borne.largest_stress?;
-        let part = borne.part_of_yield_strength.map(|part| {
-            let class = if part > 1.0 { " class=\"bad\"" } else { "" };
-            format!(", <span{class}>{} of the yield strength</span>", percent(part, &summary.verdict))
-        });
+        let weight = borne.about_weight(|part| judged(part, summary));
+        let weight = if weight.is_empty() { weight } else { format!(",{weight}") };
+        let part = borne.part_of_yield_strength;
+        let part = part.map(|part| format!(", {} of the yield strength", judged(part, summary)));
         let name = if several { format!("{}: largest", escaped(&borne.beam)) } else { "Largest".to_owned() };
         Some(format!(
-            "<p data-beam=\"{}\" data-stress=\"{}\">{name} normal stress {} at x = {}, t = {}{}</p>\n",
+            "<p data-beam=\"{}\" data-stress=\"{}\">{name} normal stress {} at x = {}, t = {}{}{weight}</p>\n",
             escaped(&borne.beam),
             largest.stress,
             with_digits(largest.stress, "Pa", 4),
@@ -70,7 +86,7 @@ pub(super) fn borne(recorder: &PageRecorder, units: &Units, summary: &Summary) -
             after_impacts(recorder).map_or("", |_| UNBOUNDED)
         );
     }
-    html.push_str(&reactions(recorder, units, summary));
+    html.push_str(&reactions(recorder, summary));
     html
 }
 
@@ -80,7 +96,7 @@ fn place(recorder: &PageRecorder, x: f64) -> String {
     format!("{} {}", shortest(x * unit.per_metre(), 4), unit.word())
 }
 
-fn reactions(recorder: &PageRecorder, units: &Units, summary: &Summary) -> String {
+fn reactions(recorder: &PageRecorder, summary: &Summary) -> String {
     let supports: Vec<_> =
         summary.beams.iter().flat_map(|borne| borne.reactions.iter().map(|range| (&borne.beam, range))).collect();
     if supports.is_empty() {
@@ -100,8 +116,7 @@ fn reactions(recorder: &PageRecorder, units: &Units, summary: &Summary) -> Strin
     let most = |of: fn(&ReactionRange) -> [f64; 2]| {
         largest(supports.iter().flat_map(|(_, range)| of(range)).collect::<Vec<_>>().iter())
     };
-    let force_unit = units.unit(Measure::Force, most(|range| range.force));
-    let couple_unit = units.unit(Measure::Moment, most(|range| range.couple));
+    let [force_unit, couple_unit] = [most(|range| range.force), most(|range| range.couple)].map(prefix);
     let columns = [("Force", force_unit, "N"), ("Couple", couple_unit, "N m")];
     for (what, (prefix, _), unit) in &columns[..if turned { 2 } else { 1 }] {
         for when in ["at the start", "least", "largest"] {
@@ -125,10 +140,12 @@ fn reactions(recorder: &PageRecorder, units: &Units, summary: &Summary) -> Strin
         let _ = writeln!(html, "<tr data-beam=\"{name}\" data-x=\"{}\">{head}{cells}</tr>", range.x);
     }
     let grows = if summary.impact_count > 0 { ": an impact\u{2019}s peak grows as the step shrinks" } else { "" };
+    let weight = without_weight(summary, |beam| !beam.reactions.is_empty());
+    let weight = weight.map_or_else(String::new, |weight| format!(", {}", escaped(&weight)));
     let _ = write!(
         html,
-        "</tbody></table></div>\n<p class=\"note\">Of the support on the beam: force upwards, couple counter-clockwise. Means over a \
-         step{grows}.</p>\n</section>"
+        "</tbody></table></div>\n<p class=\"note\">Of the support on the beam: force upwards, couple counter-clockwise{weight}. Means over \
+         a step{grows}.</p>\n</section>"
     );
     html
 }

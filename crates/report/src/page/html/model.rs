@@ -5,6 +5,39 @@ use crate::Summary;
 use crate::summary::{BeamSummary, RemovedSummary};
 use std::fmt::Write;
 use teeter_plot::escaped;
+use teeter_scenario::physical::PhysicalTable;
+
+/// The physical data of blocks, beams and contacts.
+pub(super) fn physical(tables: &[PhysicalTable]) -> String {
+    let mut html = String::new();
+    for table in tables {
+        let id = format!("data-{}", table.title.to_lowercase());
+        let _ = write!(
+            html,
+            "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"{}\"><table id=\"{id}\" class=\"physical\">\n<thead><tr>",
+            table.title
+        );
+        table.head.iter().for_each(|name| _ = write!(html, "<th scope=\"col\">{name}</th>"));
+        html.push_str("</tr></thead>\n<tbody>\n");
+        for row in &table.rows {
+            let cells = row.iter().enumerate().map(|(k, cell)| {
+                let cell = escaped(cell);
+                if k == 0 { format!("<th scope=\"row\">{cell}</th>") } else { format!("<td>{cell}</td>") }
+            });
+            let _ = writeln!(html, "<tr>{}</tr>", cells.collect::<String>());
+        }
+        html.push_str("</tbody></table></div>\n");
+        if table.more > 0 {
+            let _ = writeln!(html, "<p class=\"note\">and {} more, in the settings</p>", table.more);
+        }
+    }
+    if !html.is_empty() {
+        html.push_str(
+            "<p class=\"note\">Size: width × height × depth. α = atan(b/H); p = √(3g/(4R)), R half the diagonal. ρA: mass per length.</p>\n",
+        );
+    }
+    html
+}
 
 pub(super) fn model(summary: &Summary) -> String {
     let model = &summary.model;

@@ -1,9 +1,8 @@
 //! The numbers of the summary: those that one wants to know first as tiles, all others as a table.
 
 use super::{scientific, with_code, with_prefix_of};
-use crate::all_digits::{all_digits, with_all_digits};
+use crate::all_digits::with_all_digits;
 use crate::page::content;
-use crate::page::panels::{Measure, Units};
 use crate::verdict::{BodyVerdict, ROCKED, part};
 use crate::{Summary, shortest, with_digits};
 use serde_json::Value;
@@ -110,18 +109,12 @@ fn sliding(summary: &Summary) -> Vec<(String, String, String)> {
     tiles.into_iter().flatten().collect()
 }
 
-/// An energy that was lost, J, in the unit of the plots of energies, where that suits it.
-fn lost(lost: f64, summary: &Summary, units: &Units) -> String {
-    let scale = summary.energy.scale;
-    if !content::holds(lost.abs(), scale) {
+/// An energy that was lost, J.
+fn lost(lost: f64, summary: &Summary) -> String {
+    if !content::holds(lost.abs(), summary.energy.scale) {
         return "0 J".to_owned();
     }
-    let (prefix, factor) = units.unit(Measure::Energy, lost.abs());
-    // A number that would be long there, or begin with zeros, is in its own.
-    if !(0.1..1e4).contains(&(factor * lost.abs())) {
-        return with_all_digits(lost, "J", 3).replace('-', "\u{2212}");
-    }
-    format!("{} {prefix}J", all_digits(factor * lost, 3).replace('-', "\u{2212}"))
+    with_all_digits(lost, "J", 3).replace('-', "\u{2212}")
 }
 
 /// The largest φ/α of a scene, as the sentence at its head counts it.
@@ -158,8 +151,7 @@ impl Largest {
     }
 }
 
-/// In the units of the plots.
-pub(super) fn tiles(values: &Numbers, summary: &Summary, units: &Units) -> String {
+pub(super) fn tiles(values: &Numbers, summary: &Summary) -> String {
     let mut html = String::new();
     let seconds = |t: Option<f64>| t.map(|t| with_all_digits(t, "s", 4).replace('-', "\u{2212}"));
     for (path, label, shown) in sliding(summary) {
@@ -197,11 +189,11 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary, units: &Units) -> Strin
             "overturned_at" => (overturned.as_str(), seconds(summary.overturned_at)),
             "rests_from" if summary.rests_from == Some(0.0) => ("All at rest", Some("throughout".to_owned())),
             "rests_from" => ("All at rest from", seconds(summary.rests_from)),
-            "energy.dissipated" => ("Energy dissipated", Some(lost(summary.energy.dissipated, summary, units))),
+            "energy.dissipated" => ("Energy dissipated", Some(lost(summary.energy.dissipated, summary))),
             "energy.lost_by_scheme" => {
                 let energy = summary.energy.lost_by_scheme;
                 let any = content::holds(energy.abs(), summary.energy.scale);
-                ("Energy lost by the scheme", any.then(|| lost(energy, summary, units)))
+                ("Energy lost by the scheme", any.then(|| lost(energy, summary)))
             }
             "impact_count" => (impacts.as_str(), Some(summary.impact_count.to_string())),
             "horizon" => ("Predictable up to", seconds(summary.horizon)),

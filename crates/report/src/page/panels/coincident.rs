@@ -14,15 +14,39 @@ pub(super) fn tell_apart(lines: &mut [PortraitLine]) -> usize {
     };
     let within = [range(|line| &line.x), range(|line| &line.v)].map(|range| NEAR * range);
     let found = teeter_plot::coincident(lines.len(), |k, earlier| lies_on(&lines[k], &lines[earlier], within));
-    lines.iter_mut().zip(found.over).for_each(|(line, over)| line.over = over);
+    for k in (0..lines.len()).filter(|k| found.over[*k] > 0) {
+        let (earlier, later) = lines.split_at_mut(k);
+        let line = &mut later[0];
+        let below = earlier.iter().filter(|other| lies_on(line, other, within));
+        let mut alone = vec![true; line.t.len()];
+        for other in below {
+            alone.iter_mut().zip(near(line, other, within)).for_each(|(alone, near)| *alone &= !near);
+        }
+        (line.over, line.alone) = (found.over[k], alone);
+    }
     found.too_many
 }
 
 /// Whether a curve is where another one is at the same times, at all of its points or at half of those that are away from where it rests.
-fn lies_on(line: &PortraitLine, other: &PortraitLine, [x, v]: [f64; 2]) -> bool {
-    let mut after = 0;
+fn lies_on(line: &PortraitLine, other: &PortraitLine, within: [f64; 2]) -> bool {
+    let [x, v] = within;
     let (mut away, mut hidden, mut apart) = (0, 0, 0);
-    for (k, t) in line.t.iter().enumerate() {
+    for (k, near) in near(line, other, within).enumerate() {
+        let is_away = (line.x[k] - line.x[0]).abs() > x || line.v[k].abs() > v;
+        away += usize::from(is_away);
+        hidden += usize::from(is_away && near);
+        apart += usize::from(!near);
+    }
+    !other.t.is_empty() && (apart == 0 || 2 * hidden > away)
+}
+
+/// Of each point of a curve, whether another one is there at the same time.
+fn near(line: &PortraitLine, other: &PortraitLine, [x, v]: [f64; 2]) -> impl Iterator<Item = bool> {
+    let mut after = 0;
+    line.t.iter().enumerate().map(move |(k, t)| {
+        if other.t.is_empty() {
+            return false;
+        }
         while after + 1 < other.t.len() && other.t[after] < *t {
             after += 1;
         }
@@ -30,13 +54,8 @@ fn lies_on(line: &PortraitLine, other: &PortraitLine, [x, v]: [f64; 2]) -> bool 
         let lasting = other.t[after] - other.t[before];
         let part = if lasting > 0.0 { ((t - other.t[before]) / lasting).clamp(0.0, 1.0) } else { 0.0 };
         let between = |values: &[f64]| values[before] + part * (values[after] - values[before]);
-        let near = (line.x[k] - between(&other.x)).abs() <= x && (line.v[k] - between(&other.v)).abs() <= v;
-        let is_away = (line.x[k] - line.x[0]).abs() > x || line.v[k].abs() > v;
-        away += usize::from(is_away);
-        hidden += usize::from(is_away && near);
-        apart += usize::from(!near);
-    }
-    !other.t.is_empty() && (apart == 0 || 2 * hidden > away)
+        (line.x[k] - between(&other.x)).abs() <= x && (line.v[k] - between(&other.v)).abs() <= v
+    })
 }
 
 #[cfg(test)]
@@ -53,6 +72,7 @@ mod tests {
             v: t.iter().map(|t| amplitude * t.cos()).collect(),
             strong: 0..t.len(),
             over: 0,
+            alone: Vec::new(),
             t,
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{Curves, Line, Measure, Panels, Place, Portrait, PortraitLine, Source, TimePanel, coincident};
 use crate::driven::Driven;
-use crate::page::content::{ROUNDING, holds, largest, travel};
+use crate::page::content::{ROUNDING, holds, largest, power_of_ten, travel};
 use crate::page::notes::Note;
 use crate::page::orbit::Point;
 use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, PageRecorder, coordinate_in};
@@ -140,7 +140,11 @@ impl Panels {
         let on = from_ground(recorder, &self.curves, c);
         let name = format!("{}{on}{of_whom}", if from_start { coordinate.from_start } else { coordinate.name });
         let size = |x: f64| match c {
-            PHI => format!("{}\u{a0}{unit}", shortest(x * factor, 2)),
+            // As small as that it is no decimal number.
+            PHI => match shortest(x * factor, 2) {
+                text if text.contains('e') => format!("{}\u{a0}{unit}", power_of_ten(x * factor)),
+                text => format!("{text}\u{a0}{unit}"),
+            },
             _ => with_digits(x, "m", 2),
         };
         let note = unseen(moving.iter().map(|(k, values)| (block_label(recorder, *k), travel(values))), size);
@@ -353,6 +357,7 @@ impl Panels {
                     v: values(2, factors[1]),
                     strong,
                     over: 0,
+                    alone: Vec::new(),
                 }
             };
             let coordinate = &COORDINATES[c];

@@ -7,7 +7,7 @@ use crate::page::means::Filter;
 use crate::page::notes::Note;
 use crate::page::recorder::PageRecorder;
 use crate::page::scenery::ContactDrawn;
-use crate::sections::Kind;
+use crate::sections::{Column, Kind};
 
 /// What is to be said of forces in beams that blocks strike.
 pub(crate) fn after_impacts(recorder: &PageRecorder) -> Option<&'static str> {
@@ -36,6 +36,8 @@ impl Panels {
         let force = most(&[Kind::Shear, Kind::AxialForce, Kind::Reaction]).max(moment / span);
         let moment = moment.max(force * span);
         let jolts = Jolts::of(recorder);
+        // The moments that are plotted: the number of the beam, where, and whether it rings.
+        let mut moments: Vec<(usize, Option<f64>, bool)> = Vec::new();
         for (kind, title, of, unit, scale) in [
             (Kind::Moment, "Bending moment M", "bending moment at", "N m", moment),
             (Kind::Shear, "Transverse force V", "transverse force at", "N", force),
@@ -45,13 +47,15 @@ impl Panels {
             (Kind::ReactionCouple, "Couples of the supports", "couple of the support at", "N m", moment),
         ] {
             let mut drawn = Vec::new();
+            let mut beams = Vec::new();
             let of_kind = columns.iter().zip(&values).filter(|((column, _), _)| column.kind == kind);
             for (number, ((column, k), values)) in of_kind.enumerate() {
                 let label = recorder.section_label(column);
                 let at_probe = matches!(kind, Kind::Moment | Kind::Shear | Kind::Stress).then_some(column.x).flatten();
                 let number = at_probe.and_then(|x| recorder.number_of_probe(column.beam, x)).unwrap_or(number);
                 if holds(largest(values), scale) {
-                    drawn.push((*k, label, number, values));
+                    drawn.push((*k, label, number, values, *column));
+                    beams.push(column.beam);
                 } else {
                     self.leave_out(
                         of,
@@ -64,7 +68,7 @@ impl Panels {
             if drawn.is_empty() {
                 continue;
             }
-            let most = largest(drawn.iter().flat_map(|(.., values)| *values));
+            let most = largest(drawn.iter().flat_map(|(.., values, _)| *values));
             // Stress is known in megapascals.
             let (measure, unit, factor) = match kind {
                 Kind::Stress => (Measure::Own, "MPa", 1e-6),
@@ -79,20 +83,26 @@ impl Panels {
             };
             let filter = Filter::of(&self.curves, &jolts, &means);
             let (mut lines, mut over) = (Vec::new(), Vec::new());
-            for (column, label, number, _) in drawn {
+            for (column, label, number, _, Column { beam, x, .. }) in drawn {
                 let mean = match kind {
-                    Kind::Stress => filter
-                        .through_the_largest(&self.curves, column)
-                        .map(|most| most.into_iter().map(|stress| factor * stress).collect()),
+                    Kind::Stress => {
+                        let moment = moments.iter().find(|(of, at, _)| of == beam && at == x);
+                        filter
+                            .through_the_largest(&self.curves, column, moment.map(|(.., rings)| *rings))
+                            .map(|most| most.into_iter().map(|stress| factor * stress).collect())
+                    }
                     _ => filter.ringing(&self.curves, column),
                 };
+                if kind == Kind::Moment {
+                    moments.push((*beam, *x, mean.is_some()));
+                }
                 let is_raw = mean.is_some();
                 let name = if is_raw { String::new() } else { label.clone() };
                 lines.push(Line { is_raw, ..Line::of(&self.curves, column, factor, name, number) });
                 over.extend(mean.map(|y| Line { label, number, y, is_raw: false, of: None }));
             }
             let strong = if kind == Kind::Stress {
-                "through the largest of every"
+                "where it rings, through the largest of every"
             } else {
                 "without vibrations of periods below"
             };
@@ -103,6 +113,9 @@ impl Panels {
             }
             let peaks = (kind != Kind::AxialForce).then(|| after_impacts(recorder)).flatten();
             notes.extend(peaks.map(Note::of_plot));
+            let weight =
+                (kind != Kind::AxialForce).then(|| recorder.scenery.without_weight(beams.into_iter())).flatten();
+            notes.extend(weight.map(Note::of_plot));
             lines.extend(over);
             // What is pale stays behind all else.
             lines.sort_by_key(|line| if line.is_raw { (0, 0) } else { (1, line.number) });

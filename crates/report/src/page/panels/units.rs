@@ -147,11 +147,11 @@ pub(crate) fn length_unit(of: LengthUnit, largest: f64) -> Unit {
     units.iter().find(fits).copied().unwrap_or(("nm", 1e9))
 }
 
-/// The prefix of a unit, with its factor, that makes the largest of some values a handy number.
+/// The prefix of a unit, with its factor, in which the largest of some values is at least 1 and below 1000.
 pub(crate) fn prefix(largest: f64) -> Unit {
     let large = [("G", 1e-9), ("M", 1e-6), ("k", 1e-3), ("", 1.0)];
     let small = [("m", 1e3), ("µ", 1e6), ("n", 1e9), ("p", 1e12), ("f", 1e15), ("a", 1e18), ("z", 1e21)];
-    large.into_iter().chain(small).find(|(_, factor)| largest * factor >= 0.5).unwrap_or(("", 1.0))
+    large.into_iter().chain(small).find(|(_, factor)| largest * factor >= 1.0).unwrap_or(("", 1.0))
 }
 
 /// The unit of a time axis as long as `duration`, with its number to a second.
@@ -234,7 +234,7 @@ mod tests {
 
     #[test]
     fn any_size_has_a_unit_that_suits() {
-        assert_eq!([4e9, 6.8e8, 2e4, 400.0, 0.2, 4e-21].map(|x| prefix(x).0), ["G", "G", "k", "", "m", "z"]);
+        assert_eq!([4e9, 6.8e8, 2e4, 400.0, 0.2, 4e-21].map(|x| prefix(x).0), ["G", "M", "k", "", "m", "z"]);
         assert_eq!([3600.0, 0.1, 1e-3, 3e-6, 1e-9].map(|t| time_unit(t).0), ["s", "s", "ms", "µs", "ns"]);
     }
 }

@@ -1,0 +1,183 @@
+//! The physical data of a scene in words, as a page shows them: sizes, masses, sections, friction.
+
+use crate::mesh_error;
+use crate::scene::{BeamScene, BlockScene, ContactScene, Matter, Scene};
+use crate::simulation::{BeamPlace, Layout};
+use crate::wording;
+use teeter_beam::Damping;
+use teeter_integrator::ImpactLaw;
+use teeter_text::readable::{shortest, with_unit};
+
+/// Bodies and contacts of a table at most.
+pub const LISTED: usize = 20;
+
+/// Elements up to which a first frequency without a closed form is looked for: it is only to be shown.
+const QUICK: usize = 500;
+
+/// A table of physical data: what is not given or not known is a dash, columns in which nothing is are left out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PhysicalTable {
+    /// What its rows are: `Blocks`.
+    pub title: &'static str,
+    /// The names of its columns, that of the rows first.
+    pub head: Vec<&'static str>,
+    /// Its rows.
+    pub rows: Vec<Vec<String>>,
+    /// How many more there are.
+    pub more: usize,
+}
+
+/// The tables of blocks, beams and contacts of a scene, without those that would be empty.
+#[must_use]
+pub fn tables(scene: &Scene, layout: &Layout) -> Vec<PhysicalTable> {
+    let gravity = scene.gravity[0].hypot(scene.gravity[1]);
+    let blocks = scene.blocks.iter().take(LISTED).map(|of| block(of, gravity)).collect();
+    let beams = scene.beams.iter().zip(&layout.beams).take(LISTED).map(|(of, place)| beam(of, place)).collect();
+    // A [contact] of patterns joins many pairs by one law.
+    let mut laws: Vec<(&ContactScene, usize)> = Vec::new();
+    for of in &scene.contacts {
+        match laws.last_mut().filter(|(first, _)| first.name == of.name && first.law == of.law) {
+            Some((_, pairs)) => *pairs += 1,
+            None => laws.push((of, 1)),
+        }
+    }
+    let contacts = laws.iter().take(LISTED).map(|(of, pairs)| contact(scene, of, *pairs)).collect();
+    let tables = [
+        table("Blocks", &["Block", "Size", "Mass", "α", "p"], blocks, scene.blocks.len()),
+        table(
+            "Beams",
+            &["Beam", "Span", "Thickness", "EI", "ρA", "f₁", "Damping", "Supports"],
+            beams,
+            scene.beams.len(),
+        ),
+        table("Contacts", &["Contact", "Between", "μ", "e", "Law"], contacts, laws.len()),
+    ];
+    tables.into_iter().flatten().collect()
+}
+
+const NOTHING: &str = "–";
+
+fn table(title: &'static str, head: &[&'static str], mut rows: Vec<Vec<String>>, all: usize) -> Option<PhysicalTable> {
+    let shown: Vec<bool> = (0..head.len()).map(|k| rows.iter().any(|row| row[k] != NOTHING)).collect();
+    let is_shown = |k: usize| shown.get(k).copied().unwrap_or(false);
+    for row in &mut rows {
+        let mut k = 0..;
+        row.retain(|_| k.next().is_some_and(is_shown));
+    }
+    let head = head.iter().enumerate().filter(|(k, _)| is_shown(*k)).map(|(_, name)| *name).collect();
+    let more = all - rows.len();
+    (!rows.is_empty()).then_some(PhysicalTable { title, head, rows, more })
+}
+
+fn or_nothing(value: Option<String>) -> String {
+    value.unwrap_or_else(|| NOTHING.to_owned())
+}
+
+fn kilograms(mass: f64) -> String {
+    format!("{} kg", shortest(mass, 4))
+}
+
+/// Size, mass, α and Housner's p of an upright rectangle.
+fn block(of: &BlockScene, gravity: f64) -> Vec<String> {
+    let mut size = format!("{} × {}", with_unit(of.width, "m"), with_unit(of.height, "m"));
+    if let Matter::Homogeneous { depth, .. } = of.matter {
+        size = format!("{size} × {}", with_unit(depth, "m"));
+    }
+    let alpha = of.critical_angle();
+    // p² = m g R / I of the corner, which is 3 g / (4 R) of a homogeneous one.
+    let reach = 0.5 * of.width.hypot(of.height);
+    let homogeneous = of.parts.is_none() && matches!(of.matter, Matter::Homogeneous { .. }) && gravity > 0.0;
+    let p = homogeneous.then(|| (0.75 * gravity / reach).sqrt());
+    vec![
+        of.name.clone(),
+        size,
+        kilograms(of.mass()),
+        or_nothing(alpha.map(|alpha| format!("{}°", shortest(alpha.to_degrees(), 4)))),
+        or_nothing(p.map(|p| format!("{} rad/s", shortest(p, 4)))),
+    ]
+}
+
+fn beam(of: &BeamScene, place: &BeamPlace) -> Vec<String> {
+    let spec = &of.spec;
+    let section = &spec.section;
+    let varies = if spec.segments.is_empty() { "" } else { ", varies" };
+    let frequency = mesh_error::model_frequency(&place.beam, place.basis.as_deref(), QUICK);
+    let mut supports: Vec<String> = vec![spec.supports.map(wording::held).join(", ")];
+    supports.extend(wording::furniture(spec));
+    vec![
+        of.name.clone(),
+        with_unit(spec.span, "m"),
+        or_nothing((of.thickness > 0.0).then(|| with_unit(of.thickness, "m"))),
+        format!("{}{varies}", with_unit(section.bending_stiffness, "N m²")),
+        format!("{} kg/m{varies}", shortest(section.mass_per_length, 4)),
+        or_nothing(frequency.map(|frequency| with_unit(frequency, "Hz"))),
+        or_nothing(damping(&spec.damping)),
+        supports.join("; "),
+    ]
+}
+
+fn damping(of: &Damping) -> Option<String> {
+    let named = [("c", of.viscous, "N s/m²"), ("a₀", of.rayleigh_mass, "1/s"), ("a₁", of.rayleigh_stiffness, "s")];
+    let mut told: Vec<String> = named
+        .into_iter()
+        .filter(|(_, value, _)| *value != 0.0)
+        .map(|(name, value, unit)| format!("{name} = {} {unit}", shortest(value, 4)))
+        .collect();
+    if !of.modal.is_empty() {
+        let ratios: Vec<String> = of.modal.iter().take(4).map(|ratio| shortest(*ratio, 3)).collect();
+        let more = if of.modal.len() > ratios.len() { ", …" } else { "" };
+        told.push(format!("ζ = {}{more}", ratios.join(", ")));
+    }
+    (!told.is_empty()).then(|| told.join("; "))
+}
+
+fn contact(scene: &Scene, of: &ContactScene, pairs: usize) -> Vec<String> {
+    let [low, high] = of.friction_of_feet();
+    let friction =
+        if low == high { shortest(low, 4) } else { format!("{} to {}", shortest(low, 4), shortest(high, 4)) };
+    let bodies = format!("{}, {}", scene.blocks[of.block].name, scene.name_of(of.surface));
+    let between = if pairs > 1 { format!("{bodies} and {} more pairs", pairs - 1) } else { bodies };
+    let (restitution, law) = match of.law.impact {
+        ImpactLaw::Newton => (Some(of.law.restitution), None),
+        ImpactLaw::Poisson => (Some(of.law.restitution), Some("Poisson".to_owned())),
+        ImpactLaw::Energetic => (Some(of.law.restitution), Some("energetic".to_owned())),
+        ImpactLaw::KelvinVoigt { stiffness, damping } => {
+            let [k, c] = [with_unit(stiffness, "N/m"), with_unit(damping, "N s/m")];
+            (None, Some(format!("Kelvin–Voigt, k = {k}, c = {c}")))
+        }
+        _ => (None, Some("with duration".to_owned())),
+    };
+    vec![of.name.clone(), between, friction, or_nothing(restitution.map(|e| shortest(e, 4))), or_nothing(law)]
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::simulation::Simulation;
+
+    #[test]
+    fn the_data_of_a_scene_are_those_of_its_file() {
+        let text = "[time]\nend = '1 s'\nstep = '100 us'\n[material.a]\ndensity = '2700 kg/m^3'\nyoungs_modulus = '70 GPa'\n\
+            [beam.footing]\nmaterial = 'a'\nspan = '3 m'\nwidth = '10 cm'\nthickness = '2 cm'\nelements = 12\n\
+            supports = ['free', 'free']\nfoundation.soil = { stiffness = '20 MN/m^2' }\nmass.pump = { at = '2.4 m', mass = '40 kg' }\n\
+            support.a = { at = '1 m', spring = '5 MN/m', dashpot = '2 kN s/m' }\ndamping_ratio = { mode = 1, ratio = 0.02 }\n\
+            [block.b]\nmaterial = 'a'\nwidth = '10 cm'\nheight = '40 cm'\ndepth = '10 cm'\non = 'footing'\nat = '1.5 m'\n\
+            [contact.feet]\nbetween = ['b', 'footing']\nfriction = 0.5\nrestitution = 0.1\n";
+        let resolved = crate::load(text.as_bytes(), "f", "f", &[]).unwrap();
+        let simulation = Simulation::new(&resolved.scene).unwrap();
+        let tables = super::tables(&resolved.scene, &simulation.layout);
+        let titles: Vec<&str> = tables.iter().map(|table| table.title).collect();
+        assert_eq!(titles, ["Blocks", "Beams", "Contacts"]);
+        // p = √(3 g/(4 R)) with R = 0.2062 m.
+        assert_eq!(tables[0].rows, [["b", "100 mm × 400 mm × 100 mm", "10.8 kg", "14.04°", "5.974 rad/s"]]);
+        assert_eq!(tables[1].head[..5], ["Beam", "Span", "Thickness", "EI", "ρA"]);
+        assert_eq!(tables[1].rows[0][1..5], ["3 m", "20 mm", "4.667 kN m²", "5.4 kg/m"]);
+        let supports = tables[1].rows[0].last().unwrap();
+        for part in
+            ["free, free", "20 MN/m²", "spring of 5 MN/m and dashpot of 2 kN s/m at 1 m", "mass of 40 kg at 2.4 m"]
+        {
+            assert!(supports.contains(part), "{part}: {supports}");
+        }
+        assert_eq!(tables[2].head, ["Contact", "Between", "μ", "e"], "Newton's law is the usual one");
+        assert_eq!(tables[2].rows, [["feet", "b, footing", "0.5", "0.1"]]);
+    }
+}
