@@ -359,11 +359,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         if self.looked.is_empty() || (follows && !self.looked.iter().any(|id| model.detector().is_summit(*id))) {
             match follows {
                 true => self.guessed.copy_from_slice(&state.v),
-                // ½(v⁰ + v_free), the mean velocity of the free motion.
-                false => {
-                    let both = self.v_free.iter().zip(&state.v);
-                    self.guessed.iter_mut().zip(both).for_each(|(v, (free, v0))| *v = 0.5 * (free + v0));
-                }
+                false => self.guess_free_motion(state),
             }
             self.move_to_guess(model, state, h);
             self.locate_closed(model, work)?;

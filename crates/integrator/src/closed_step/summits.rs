@@ -13,7 +13,7 @@ const MOST_ROUNDS: usize = 24;
 const SHRINKS: f64 = 0.5;
 
 /// So many rounds in a row may lead nowhere.
-const PATIENCE: usize = 6;
+const PATIENCE: usize = 4;
 
 /// A relaxation beyond this comes from two rounds that agree to rounding.
 const MOST_RELAXATION: f64 = 8.0;
@@ -42,6 +42,8 @@ pub(super) struct Rounds<const D: usize> {
     before: Vec<f64>,
     /// The guess whose frames changed least.
     best: Vec<f64>,
+    /// Whether rounds have begun again, from the motion without impulses.
+    again: bool,
 }
 
 impl<const D: usize> Default for Rounds<D> {
@@ -60,6 +62,7 @@ impl<const D: usize> Default for Rounds<D> {
             across: Vec::new(),
             before: Vec::new(),
             best: Vec::new(),
+            again: false,
         }
     }
 }
@@ -80,8 +83,18 @@ impl<const D: usize> Rounds<D> {
     }
 
     pub(super) fn begin(&mut self) {
-        (self.count, self.idle) = (0, 0);
-        (self.least, self.relaxation) = (f64::INFINITY, 1.0);
+        (self.count, self.least, self.again) = (0, f64::INFINITY, false);
+        self.forget();
+    }
+
+    /// Begins again from another guess; the best of before counts.
+    fn begin_again(&mut self) {
+        (self.count, self.again) = (1, true);
+        self.forget();
+    }
+
+    fn forget(&mut self) {
+        (self.idle, self.relaxation) = (0, 1.0);
         self.ways_before.clear();
         (self.way, self.way_across) = (None, None);
     }
@@ -117,9 +130,13 @@ impl<const D: usize> Rounds<D> {
 
     /// Makes the next guess where a summit isn't there, or doesn't press, with the last one: halfway back to the best; whether there is one.
     fn guess_nearer(&mut self, guessed: &mut [f64]) -> bool {
+        if !self.least.is_finite() {
+            return false;
+        }
         self.idle += 1;
+        self.relaxation *= 0.5;
         guessed.iter_mut().zip(&self.best).for_each(|(guessed, best)| *guessed = 0.5 * (*guessed + best));
-        self.least.is_finite() && self.goes_on()
+        self.goes_on()
     }
 
     fn goes_on(&mut self) -> bool {
@@ -145,15 +162,9 @@ impl<const D: usize> Rounds<D> {
             }
             _ => None,
         };
-        match (way, self.way) {
-            (Some(way), Some(before)) if way * before < 0.0 => {
-                std::mem::swap(&mut self.across, &mut self.before);
-                self.way_across = Some(before);
-            }
-            (Some(_), Some(_)) => self.way_across = self.way_across.map(|way| 0.5 * way),
-            _ => self.way_across = None,
-        }
-        if same {
+        if !same {
+            self.relaxation = 1.0;
+        } else if self.way_across.is_none() {
             let (mut along, mut square) = (0.0, 0.0);
             for ((_, way), (_, before)) in self.ways.iter().zip(&self.ways_before) {
                 let change = way - before;
@@ -163,6 +174,14 @@ impl<const D: usize> Rounds<D> {
             if square > 0.0 {
                 self.relaxation *= -along / square;
             }
+        }
+        match (way, self.way) {
+            (Some(way), Some(before)) if way * before < 0.0 => {
+                std::mem::swap(&mut self.across, &mut self.before);
+                self.way_across = Some(before);
+            }
+            (Some(_), Some(_)) => self.way_across = self.way_across.map(|way| 0.5 * way),
+            _ => self.way_across = None,
         }
         self.way = way;
         self.before.copy_from_slice(guessed);
@@ -183,9 +202,16 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         model.move_along(&from.q, &self.guessed, 0.5 * h, &mut self.q_mid);
     }
 
+    /// Guesses ½(v⁰ + v_free), the mean velocity of the free motion.
+    pub(super) fn guess_free_motion(&mut self, from: &State) {
+        let both = self.v_free.iter().zip(&from.v);
+        self.guessed.iter_mut().zip(both).for_each(|(v, (free, v0))| *v = 0.5 * (free + v0));
+    }
+
     /// Takes frames and gaps of all closed contacts from a motion nearer to the one that was found, where the frame of a summit that presses
-    /// differs there so much that its gap changes over the step by more than rounding. Where such rounds lead nowhere, those of the best guess are taken, for
-    /// the last time; where none presses, those of the motion without impulses. Whether it took any: the step is then to be solved again.
+    /// differs there so much that its gap changes over the step by more than rounding. Where such rounds lead nowhere, they begin again from the motion without
+    /// impulses: a surface that is straight in the first guess has no summit but by rounding, and shows it where the base would sink in. Where these fail, too, the
+    /// frames of the best guess are taken, for the last time; where none presses, those of the motion without impulses. Whether it took any: the step is then to be solved again.
     ///
     /// Were all those of the motion without impulses: where a load presses, a summit is elsewhere there, always to the same side, and as
     /// its frame turns with its place, each tremor of the surface lets the base sink in. That sets free energy, which keeps the tremor alive,
@@ -218,14 +244,19 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
             Some(change) => rounds.guess_anew(change, guessed),
             None => rounds.guess_nearer(guessed),
         };
-        self.summits_lost = !goes_on;
-        if self.summits_lost && rounds.least.is_finite() {
+        let is_known = rounds.least.is_finite();
+        if is_known && !goes_on && !rounds.again {
+            rounds.begin_again();
+            self.guess_free_motion(from);
+        } else if is_known && !goes_on {
+            self.summits_lost = true;
             guessed.copy_from_slice(&rounds.best);
         }
-        if rounds.least.is_finite() {
+        if is_known {
             self.move_to_guess(model, from, h);
             self.locate_closed(model, work)?;
         } else {
+            self.summits_lost = true;
             self.looked.clear();
             self.look_ahead(model, from, h, work)?;
         }

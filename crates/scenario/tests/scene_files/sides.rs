@@ -197,19 +197,33 @@ fn a_small_block_beside_a_support_stays_as_it_was_put() {
          [block.b]\nmaterial = 's'\nwidth = '6 cm'\nheight = '4 cm'\ndepth = '3 cm'\non = 'strip'\nat = '30.05 cm'\n\
          [contact.c]\nbetween = ['b', 'strip']\nfriction = 0.5\n";
     let weight = 7850.0 * 0.06 * 0.04 * 0.03 * G;
-    for (at, step) in [("30.05 cm", "200 us"), ("30.1 cm", "100 us"), ("30.3 cm", "500 us"), ("30.6 cm", "200 us")] {
-        let quoted = |value: &str| format!("'{value}'");
-        let (at_there, step_there) = (quoted(at), quoted(step));
-        let mut simulation = simulation(text, &[("block.b.at", &at_there), ("time.step", &step_there)]);
+    // Flush over the support the strip is straight, and has no crest but by rounding: there blocks tremble, and sank by 47 µm where the
+    // place wasn't looked for anew from where they would sink in.
+    for (at, step, width, most) in [
+        ("30.05 cm", "200 us", 6, 1e-9),
+        ("30.1 cm", "100 us", 6, 1e-9),
+        ("30.3 cm", "500 us", 6, 1e-9),
+        ("30.6 cm", "200 us", 6, 1e-9),
+        ("30 cm", "200 us", 12, 2e-6),
+    ] {
+        let weight = weight * f64::from(width) / 6.0;
+        let sets = [
+            ("block.b.at", format!("'{at}'")),
+            ("time.step", format!("'{step}'")),
+            ("block.b.width", format!("'{width} cm'")),
+        ];
+        let mut simulation = simulation(text, &sets.each_ref().map(|(key, value)| (*key, value.as_str())));
         let start = simulation.static_start.clone().unwrap();
         let pressed: f64 = start.forces.iter().map(|force| force.force[0]).sum();
-        assert!((pressed / weight - 1.0).abs() < 1e-4, "{at}: {pressed} of {weight} N");
+        // A straight strip has no crest to name.
+        assert!(at == "30 cm" || (pressed / weight - 1.0).abs() < 1e-4, "{at}: {pressed} of {weight} N");
         let block = simulation.layout.blocks[0].range.clone();
         let put = simulation.state.q[block.clone()].to_vec();
         assert_eq!(simulation.run(&mut []).unwrap(), Ended::Complete);
-        let sunk = put[1] - simulation.state.q[block][1];
+        let [sunk, turned] = [1, 2].map(|k| (put[k] - simulation.state.q[block.clone()][k]).abs());
         let deepest = simulation.state.tally.max_penetration;
-        assert!(sunk.abs() < 5e-9 && deepest < 1e-9, "{at} {step}: {sunk:e} m, {deepest:e} m");
+        assert!(sunk < 5.0 * most && deepest < most, "{at} {step}: {sunk:e} m, {deepest:e} m");
+        assert!(turned < 1e-6, "{at} {step}: {turned:e}");
     }
 }
 
