@@ -83,35 +83,31 @@ fn resting_line(profile: &Profile, at: f64, width: f64) -> Option<Line> {
     ((next - slope).abs() <= 1e3 * SAME_SLOPE).then_some([at, height, next])
 }
 
-/// The slopes (rad), the least and the largest, with which a base between two places, x in m, lies on the ground: the same but where
-/// its middle half is over a crest, about which it turns without being lifted. `None` where the second isn't to the right of the first.
+/// The pieces of the hull of the ground under a base between two places, x in m, from left to right: between which x each is (m), and its
+/// slope (rad). None where the second place isn't to the right of the first.
 #[must_use]
-pub fn slopes_of_base(profile: &Profile, [left, right]: [f64; 2]) -> Option<[f64; 2]> {
-    let quarter = 0.25 * (right - left);
-    let middle = |two: &&[Vector2<f64>]| two[1].x > left + quarter && two[0].x < right - quarter;
-    let hull = hull_over(profile, [left, right]);
-    let slopes = hull.windows(2).filter(middle).map(slope_between).map(|slope| [slope; 2]);
-    slopes.reduce(|[least, most], [slope, _]| [least.min(slope), most.max(slope)])
+pub fn pieces_under(profile: &Profile, [left, right]: [f64; 2]) -> Vec<([f64; 2], f64)> {
+    let hull = if left < right { hull_over(profile, [left, right]) } else { Vec::new() };
+    hull.windows(2).map(|two| ([two[0].x, two[1].x], slope_between(two))).collect()
 }
 
-/// How far a place over the ground is along its surface, to the right of the first point of the profile, m.
+/// How far the ground at x is along its surface, to the right of the first point of the profile, m.
 #[must_use]
-pub fn along(profile: &Profile, at: [f64; 2]) -> f64 {
-    let at = Vector2::from(at);
+pub fn along(profile: &Profile, x: f64) -> f64 {
     let mut points = profile.points();
-    let Some(mut from) = points.next() else { return at.x };
+    let Some(mut from) = points.next() else { return x };
     let mut passed = 0.0;
-    if at.x > from.x {
+    if x > from.x {
         for to in points {
             let piece = to - from;
-            if at.x < to.x {
-                return passed + (at - from).dot(&piece.normalize());
+            if x < to.x {
+                return passed + piece.norm() * (x - from.x) / piece.x;
             }
             passed += piece.norm();
             from = to;
         }
     }
-    passed + at.x - from.x
+    passed + x - from.x
 }
 
 fn slope_between(two: &[Vector2<f64>]) -> f64 {
@@ -309,5 +305,15 @@ mod tests {
         let trench = profile(&[[-0.1, 0.0], [0.0, 1.0], [0.1, 0.0], [0.9, 0.0], [1.0, 1.5], [1.1, 0.0]]);
         let [_, y, angle] = resting_line(&trench, 0.5, 2.0).unwrap();
         assert!((angle - 0.5_f64.atan()).abs() < 1e-15 && (y - 1.25).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_base_is_over_the_pieces_of_a_crest_and_across_a_valley() {
+        let hill = profile(&[[-4.0, 0.0], [-2.0, 0.0], [0.0, 0.0], [4.0, -3.0]]);
+        let slope = -0.75_f64.atan();
+        assert_eq!(pieces_under(&hill, [-1.0, 2.0]), [([-1.0, 0.0], 0.0), ([0.0, 2.0], slope)]);
+        assert_eq!(pieces_under(&hill, [2.0, 6.0]), [([2.0, 6.0], -0.375_f64.atan())]);
+        assert!(pieces_under(&hill, [1.0, 1.0]).is_empty());
+        assert_eq!([-5.0, -4.0, 0.0, 2.0, 4.0, 5.0].map(|x| along(&hill, x)), [-1.0, 0.0, 4.0, 6.5, 9.0, 10.0]);
     }
 }

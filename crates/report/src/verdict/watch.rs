@@ -199,7 +199,7 @@ impl Watched {
         self.carrier.clearance([q[0], q[1]], self.feet_at(q), self.has_face, layout, &state.q)
     }
 
-    /// Where its base stands along what carries it, m: put flat about the foot on which it is tilted.
+    /// Where the middle of its base stands along what carries it, m: put flat about the foot on which it is tilted.
     pub(super) fn place(&self, layout: &Layout, number: usize, state: &State) -> Option<f64> {
         let [left, right] = self.feet?;
         let q = &state.q[layout.blocks[number].range.clone()];
@@ -207,8 +207,14 @@ impl Watched {
         let [x, y] = if ahead { left } else { right };
         let (sin, cos) = q[2].sin_cos();
         let half = 0.5 * (right[0] - left[0]);
-        let foot = self.carrier.along([q[0] + cos * x - sin * y, q[1] + sin * x + cos * y], layout, &state.q);
-        Some(foot + if ahead { half } else { -half })
+        let half = if ahead { half } else { -half };
+        let foot = [q[0] + cos * x - sin * y, q[1] + sin * x + cos * y];
+        if self.carrier.is_terrain() {
+            // Of a base over a crest or a valley, one foot isn't as far from the middle along the surface as the other one.
+            let (sin, cos) = self.carrier.slope(&state.q).sin_cos();
+            return Some(self.carrier.along([foot[0] + half * cos, foot[1] + half * sin], layout, &state.q));
+        }
+        Some(self.carrier.along(foot, layout, &state.q) + half)
     }
 
     /// How fast it moves: relative to what carries it or, if that is less, to what carries that. A block may be still on a beam that bends, and over

@@ -173,3 +173,64 @@ fn a_stack_on_a_slope_stands_upright_on_that() {
         }
     }
 }
+
+/// Blocks whose base is from 14 cm left to 6 cm right of a crest, beyond which the ground goes down: what one and three on each other are told.
+fn over_a_crest(name: &str, down: f64, shake: f64, [storeys, height]: [usize; 2]) -> crate::page::Run {
+    let stone =
+        STONE.replace("material = 'm'", &format!("material = 'm'\nrepeat = {{ count = {storeys}, stacked = true }}"));
+    let stone = if storeys == 1 { STONE.to_owned() } else { stone };
+    run(
+        name,
+        &format!(
+            "[time]\nend = '3 s'\nstep = '500 us'\n[ground]\nprofile = {{ points = [['-2 m', '0 m'], ['0 m', '0 m'], ['2 m', '-{down} m']] }}\n\
+             motion = {{ acceleration = ['{shake} m/s^2', '0 m/s^2'], signal = 's' }}\n[signal.s]\nshape = 'one-sine'\nperiod = '0.5 s'\n\
+             {stone}width = '20 cm'\nheight = '{height} cm'\nat = '-4 cm'\n[contact.c]\nbetween = ['*', '*']\nfriction = 0.9\n"
+        ),
+    )
+}
+
+/// It turns about the crest, even on to lying flat beyond it, but its mass centre stays on this side, to which it falls back.
+#[test]
+fn what_rocks_about_a_crest_counts_from_where_it_falls_back_to() {
+    let tower = over_a_crest("tower-rocks-on-crest", 0.2, 2.5, [1, 72]).summary;
+    let column = over_a_crest("column-rocks-on-crest", 0.2, 2.5, [3, 24]).summary;
+    // The peak is at 6.02°, and atan(10/36) is 15.52°.
+    assert!((tower.verdict[0].max_phi_over_alpha.unwrap() - 0.388).abs() < 1e-3, "{}", tower.headline);
+    assert!(tower.headline.starts_with("`b` rocks on, last peak −3.06°"), "{}", tower.headline);
+    assert!(column.headline.starts_with("all 3 blocks rock on as one column"), "{}", column.headline);
+    assert!(column.headline.ends_with("largest φ/α of the column 0.388"), "{}", column.headline);
+    for of in [&tower, &column] {
+        let peaks: Vec<f64> = of.peaks.iter().filter(|peak| peak.body.starts_with('b')).map(|peak| peak.phi).collect();
+        assert!(peaks.len() >= 5 && (peaks[0] + 0.105).abs() < 1e-3, "{peaks:?}");
+    }
+}
+
+/// On the slope beyond the crest neither could stand.
+#[test]
+fn what_overturns_over_a_crest_does_so_as_from_level_ground() {
+    let tower = over_a_crest("tower-over-crest", 1.0, 3.4, [1, 72]).summary;
+    let column = over_a_crest("column-over-crest", 1.0, 3.4, [3, 24]).summary;
+    assert!(
+        column
+            .headline
+            .starts_with("all 3 blocks overturned as one column on the base of `b-1` to the right at t = 591.")
+    );
+    let of = &tower.verdict[0];
+    assert!((of.overturned_at.unwrap() - 0.5912).abs() < 1e-3, "{:?}", of.overturned_at);
+    assert!(of.max_phi_over_alpha.unwrap() > 2.0, "{:?}", of.max_phi_over_alpha);
+    assert_eq!(of.lies_on.as_ref().unwrap().word(), "right side");
+    assert!(tower.peaks.iter().all(|peak| peak.phi < 0.1), "{:?}", tower.peaks);
+}
+
+/// Its right foot is over the slope beyond the crest, and its angle is zero but for rounding.
+#[test]
+fn what_stands_over_a_crest_is_displaced_by_nothing() {
+    let text = format!(
+        "[time]\nend = '1 s'\nstep = '500 us'\n[ground.profile]\npoints = [['-2 m', '0 m'], ['0 m', '0 m'], ['2 m', '-1 m']]\n\
+         {STONE}width = '20 cm'\nheight = '10 cm'\nat = '-3 cm'\n{}",
+        floor(0.8)
+    );
+    let ran = run("still-over-a-crest", &text);
+    assert_eq!(ran.summary.headline, "`b` stood still throughout");
+    assert!(ran.summary.verdict[0].displaced.unwrap().abs() < 1e-12, "{:?}", ran.summary.verdict[0].displaced);
+}
