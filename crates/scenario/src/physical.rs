@@ -128,7 +128,10 @@ fn size(of: &BlockScene) -> String {
             format!("extents {}", sides([extent(0), extent(1)]))
         }
     };
-    depth.map_or(size.clone(), |depth| format!("{size}, depth {depth}"))
+    match depth {
+        Some(depth) => format!("{size}, depth {depth}"),
+        None => size,
+    }
 }
 
 /// Size, mass, α and Housner's p of an upright rectangle.
