@@ -173,17 +173,16 @@ fn beam(beam: &BeamPreview) -> String {
         count(beam.dofs as u64, "degree of freedom"),
         beam.backend
     );
-    let between = match beam.inner_supports {
-        0 => String::new(),
-        n => format!(", {} between", count(n as u64, "support")),
-    };
     let nodes = if beam.shapes.is_some() { "" } else { ", all its nodes" };
-    let _ = write!(text, "\n    {}{nodes}; ends {}, {}{between}", beam.theory, beam.supports[0], beam.supports[1]);
+    let _ = write!(text, "\n    {}{nodes}; ends {}, {}", beam.theory, beam.supports[0], beam.supports[1]);
     if let Some(axial) = beam.axial {
         let _ = write!(text, "; {axial}");
     }
     for what in beam.furniture.iter().take(LISTED) {
         let _ = write!(text, "\n    with {what}");
+    }
+    if let Some(n) = beam.furniture.len().checked_sub(LISTED).filter(|n| *n > 0) {
+        let _ = write!(text, "\n    and {n} more");
     }
     if let Some(frequency) = beam.first_frequency {
         let own = if beam.frequency_is_exact { "the continuous beam" } else { "a mesh eight times as fine" };

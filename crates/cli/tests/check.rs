@@ -111,6 +111,24 @@ fn with_few_elements_the_model_s_numbers_stand_beside_the_beam_s() {
 }
 
 #[test]
+fn what_a_beam_rests_on_is_told_once_and_counted_beyond_twenty() {
+    let piers = |n: usize| {
+        let pier = |k: usize| format!("[beam.table.support.p{k}]\nat = \"{}.5 cm\"\nkind = \"pinned\"\n", k + 1);
+        let all = (0..n).map(pier).collect::<String>() + "[block.rocker]";
+        let text = std::fs::read_to_string(scenario("free-rocking-on-beam")).unwrap().replace("[block.rocker]", &all);
+        let scene = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("piers-{n}.toml"));
+        std::fs::write(&scene, text).unwrap();
+        let (_, stdout, stderr) = check(&[scene.to_str().unwrap()]);
+        assert!(stdout.contains("    with pinned at 15 mm\n"), "{stdout}{stderr}");
+        stdout
+    };
+    let few = piers(2);
+    assert!(!few.contains("supports between") && !few.contains("    and "), "{few}");
+    let many = piers(23);
+    assert!(many.contains("    with pinned at 205 mm\n    and 3 more\n") && !many.contains("at 215 mm"), "{many}");
+}
+
+#[test]
 fn an_unusual_gap_tolerance_is_told() {
     let (_, stdout, _) = check(&[&scenario("free-rocking-on-ground"), "--set", "block.rocker.height=2 m"]);
     assert!(stdout.contains("a gap below 20 pm counts as closed"), "{stdout}");

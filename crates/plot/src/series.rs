@@ -189,9 +189,11 @@ impl Series {
         for k in (0..lines.len()).filter(|k| found.over[*k] > 0) {
             let (earlier, later) = lines.split_at_mut(k);
             let line = &mut later[0];
-            let below = || earlier.iter().filter(|other| line.lies_on(other, tolerance));
-            let near = |i: usize, other: &Self| (line.points[i].1 - other.points[i].1).abs() <= tolerance;
-            line.alone = (0..line.points.len()).map(|i| !below().any(|other| near(i, other))).collect();
+            let below: Vec<&Self> = earlier.iter().filter(|other| line.lies_on(other, tolerance)).collect();
+            let near = |i: usize, y: f64| below.iter().any(|other| (y - other.points[i].1).abs() <= tolerance);
+            // Where it has no value there is nothing to draw.
+            let points = line.points.iter().enumerate();
+            line.alone = points.map(|(i, &(_, y))| y.is_finite() && !near(i, y)).collect();
             line.dash = Dash::Over(found.over[k]);
         }
         found.too_many
@@ -308,6 +310,18 @@ mod tests {
         assert_eq!((leaves(7, 5.0), leaves(3, 5.0)), (Dash::Over(1), Dash::ByNumber));
         // At 0 both are often, and hide nothing that matters.
         assert_eq!(leaves(7, 0.0), Dash::ByNumber);
+    }
+
+    #[test]
+    fn a_line_is_alone_only_where_it_has_a_value() {
+        let line = |gap: usize, away: usize| {
+            let y = move |k| if k == gap { f64::NAN } else { 5.0 + if k == away { 2.0 } else { 0.0 } };
+            Series::line("", (0..9).map(|k| (k as f64, y(k))))
+        };
+        let mut lines = [line(9, 9), line(3, 6)];
+        let _ = Series::tell_apart(&mut lines, 0.1);
+        let alone = lines[1].alone.iter().enumerate().filter(|(_, alone)| **alone).map(|(k, _)| k);
+        assert_eq!((lines[1].dash, alone.collect::<Vec<_>>()), (Dash::Over(1), vec![6]));
     }
 
     #[test]

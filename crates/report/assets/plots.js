@@ -141,7 +141,7 @@ const plots = (() => {
     }
     series.forEach((line, k) => {
       const below = line.over ? series.slice(0, k).filter((earlier) => near(line, earlier)) : [];
-      line.alone = line.over ? line.y.map((x, i) => !below.some(({ y }) => Math.abs(x - y[i]) <= within)) : [];
+      line.alone = line.over ? line.y.map((x, i) => x !== null && !below.some(({ y }) => Math.abs(x - y[i]) <= within)) : [];
     });
   }
 

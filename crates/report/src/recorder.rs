@@ -498,7 +498,7 @@ impl Observer<2> for Recorder<'_> {
         *rocking = started().map(|(tilt, place)| monitor(tilt.carrier, place.still)).collect();
         self.look_at_deflections(state);
         let (record, values) = (&mut self.kept.record, &mut self.kept.section_values);
-        self.sections.start(self.layout, state, &mut record.beams, values);
+        self.sections.start(self.layout, state, (&mut record.beams, values), &mut record.warnings);
         Ok(self.write_row(state)?)
     }
 

@@ -290,9 +290,17 @@ impl Sections {
         }
     }
 
-    /// Takes the start of the run, which belongs to the extremes.
-    pub(crate) fn start(&mut self, layout: &Layout, state: &State, records: &mut [BeamRecord], values: &mut Values) {
-        for (watched, record) in self.watched.iter_mut().zip(records) {
+    /// Takes the start of the run, which belongs to the extremes, and warns of yielding.
+    pub(crate) fn start(
+        &mut self,
+        layout: &Layout,
+        state: &State,
+        (records, values): (&mut [BeamRecord], &mut Values),
+        warnings: &mut WarningLog,
+    ) {
+        let beams = self.watched.len().min(records.len());
+        for beam in 0..beams {
+            let (watched, record) = (&mut self.watched[beam], &mut records[beam]);
             let Some(place) = layout.beams.iter().find(|place| place.name == record.beam) else { continue };
             // An equilibrium is one at t = 0; a run that goes on from another's state is in motion.
             let pressed = place.pressed.as_deref().filter(|_| state.step == 0);
@@ -315,7 +323,9 @@ impl Sections {
                     })
                     .collect();
             }
-            record.take(watched.forces.beam(), watched.forces.dofs(), (forces, watched.own_weight.as_ref()), state.t);
+            let both = (forces, watched.own_weight.as_ref());
+            let stress = record.take(watched.forces.beam(), watched.forces.dofs(), both, state.t);
+            self.warn_of_yielding(records, (beam, stress), "at the start", warnings);
         }
     }
 
@@ -341,38 +351,54 @@ impl Sections {
             let forces = watched.forces.forces();
             let both = (forces, watched.own_weight.as_ref());
             let stress = record.take(watched.forces.beam(), watched.forces.dofs(), both, step.t_end);
-            if let (Some(now), Some(strength)) = (stress, watched.yield_strength)
-                && now.stress > strength
-            {
-                // Of several beams the one that is furthest beyond its strength.
-                let part = now.stress / strength;
-                let most = self.watched.iter().zip(&*records).filter_map(|(of, record)| {
-                    Some((record.decisive()?, of.yield_strength?)).map(|(largest, strength)| largest.stress / strength)
-                });
-                let is_largest = !first::exceeds(most.fold(0.0, f64::max), part)
-                    && records[beam].decisive().is_some_and(|largest| largest.t == now.t);
-                let (watched, record) = (&self.watched[beam], &records[beam]);
-                warnings.enter_largest(YIELD, now.t, is_largest, || watched.yielding(&record.beam, now, strength));
-            }
+            let step = format!("in the step to t = {}", with_digits(step.t_end, "s", 7));
+            self.warn_of_yielding(records, (beam, stress), &step, warnings);
         }
+    }
+
+    /// Warns if the largest stress that a beam has now is above its yield strength; `when` says in words when that is.
+    fn warn_of_yielding(
+        &self,
+        records: &[BeamRecord],
+        (beam, stress): (usize, Option<LargestStress>),
+        when: &str,
+        warnings: &mut WarningLog,
+    ) {
+        let (watched, record) = (&self.watched[beam], &records[beam]);
+        let (Some(now), Some(strength)) = (stress, watched.yield_strength) else { return };
+        if now.stress <= strength {
+            return;
+        }
+        // Of several beams the one that is furthest beyond its strength.
+        let part = now.stress / strength;
+        let most = self.watched.iter().zip(records).filter_map(|(of, record)| {
+            Some((record.decisive()?, of.yield_strength?)).map(|(largest, strength)| largest.stress / strength)
+        });
+        let is_largest = !first::exceeds(most.fold(0.0, f64::max), part)
+            && record.decisive().is_some_and(|largest| largest.t == now.t);
+        warnings.enter_largest(YIELD, now.t, is_largest, || watched.yielding(&record.beam, now, (strength, when)));
     }
 }
 
 impl Watched {
     /// That a beam's stress passes its yield strength, Pa.
-    fn yielding(&self, beam: &str, LargestStress { stress, x, t }: LargestStress, strength: f64) -> String {
+    fn yielding(
+        &self,
+        beam: &str,
+        LargestStress { stress, x, .. }: LargestStress,
+        (strength, when): (f64, &str),
+    ) -> String {
         let weight = match (self.is_without_weight, &self.own_weight) {
             (false, _) => "",
             (true, Some(_)) => " with the beam's own weight, which `self_weight = false` leaves out of the run,",
             (true, None) => ", even without the beam's own weight,",
         };
         format!(
-            "the stress in `{beam}`{weight} passes its yield strength: up to {} of {} at x = {}, in the step to t = {}; the model \
+            "the stress in `{beam}`{weight} passes its yield strength: up to {} of {} at x = {}, {when}; the model \
              stays elastic",
             with_digits(stress, "Pa", 4),
             with_unit(strength, "Pa"),
-            with_unit(x, "m"),
-            with_digits(t, "s", 7)
+            with_unit(x, "m")
         )
     }
 

@@ -47,9 +47,7 @@ pub struct BeamPreview {
     pub theory: &'static str,
     /// The words for its supports at the ends.
     pub supports: [&'static str; 2],
-    /// Supports between the ends.
-    pub inner_supports: usize,
-    /// What it rests on between them and what it carries, in words.
+    /// What it rests on between its ends and what it carries, in words.
     pub furniture: Vec<String>,
     /// Its axial model; `None` without one.
     pub axial: Option<&'static str>,
@@ -186,7 +184,6 @@ impl BeamPreview {
             backend: wording::backend(beam),
             theory: wording::theory(beam),
             supports: spec.supports.map(wording::support),
-            inner_supports: spec.inner_supports.len(),
             furniture: wording::furniture(spec),
             axial: match spec.axial {
                 Axial::Held => Some("held along its axis, stretched by deflection"),

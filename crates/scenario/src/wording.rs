@@ -19,7 +19,7 @@ pub fn support(support: Support) -> &'static str {
     }
 }
 
-/// How a support holds a beam: its word, or its springs and dashpots.
+/// How a support holds a beam: its word, or its springs and dashpots; "free" where these are all zero.
 #[must_use]
 pub fn held(of: Support) -> String {
     let Support::Elastic { deflection, rotation } = of else { return support(of).to_owned() };
@@ -36,7 +36,8 @@ pub fn held(of: Support) -> String {
         }
         _ => Vec::new(),
     });
-    told.collect::<Vec<_>>().join(" and ")
+    let told: Vec<String> = told.collect();
+    if told.is_empty() { support(Support::Free).to_owned() } else { told.join(" and ") }
 }
 
 /// What a beam rests on between its ends and what it carries, each in words.
@@ -167,6 +168,14 @@ mod tests {
         let told = [1e-4, 0.000_123_456, 0.25, 5.0, 1234.5, 3e-9, 9.999_9e-4, 0.0].map(|t| seconds(t, 3));
         assert_eq!(told, ["100 us", "123 us", "250 ms", "5 s", "1230 s", "3e-9 s", "1 ms", "0e0 s"]);
         assert_eq!((seconds(2.4e-5, 1), seconds(7e-7, 2)), ("20 us".to_owned(), "7e-7 s".to_owned()));
+    }
+
+    #[test]
+    fn an_elastic_support_without_springs_and_dashpots_is_free() {
+        let spring = |stiffness: f64| Hold::Spring { stiffness, damping: 0.0 };
+        let told = |deflection, rotation| held(Support::Elastic { deflection, rotation });
+        assert_eq!([told(spring(0.0), spring(0.0)), told(Hold::Free, Hold::Free)], ["free"; 2]);
+        assert_eq!(told(Hold::Free, spring(5.0)), "rotational spring of 5 N m/rad");
     }
 
     #[test]

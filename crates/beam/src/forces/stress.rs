@@ -21,8 +21,9 @@ impl SectionForces {
         self.largest_stress_beside(beam, None)
     }
 
-    /// The same where the bending moments of `other`, such as those of a load that is left out of these, come on top; its loads may
-    /// not lie inside the elements, as the beam's own weight doesn't.
+    /// The same where the bending moments of `other`, such as those of a load that is left out of these, come on top. It is looked at
+    /// at the same places: the point loads of `other` inside the elements are none of them unless they are loads of these, too, and
+    /// a maximum that a distributed load, such as the beam's own weight, has between two of these places is missed.
     #[must_use]
     pub fn largest_stress_beside(&self, beam: &Beam, other: Option<&Self>) -> Option<PeakStress> {
         let mut largest: Option<PeakStress> = None;

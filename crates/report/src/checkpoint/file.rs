@@ -246,6 +246,13 @@ mod tests {
         std::fs::remove_file(&path).unwrap();
     }
 
+    #[test]
+    fn the_page_on_long_runs_names_the_version() {
+        let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/long-runs.md");
+        let text = std::fs::read_to_string(page).unwrap();
+        assert!(text.contains(&format!("reads and writes version {VERSION}.")));
+    }
+
     /// If this fails, files written before can no longer be read: make [`VERSION`] one larger, then put the new numbers here.
     #[test]
     fn the_format_is_that_of_its_version() {

@@ -26,6 +26,17 @@ pub(crate) enum Of {
     Reclosure { lasting: f64 },
 }
 
+impl Of {
+    /// The same of what comes again in a part of a step whose time has been counted.
+    pub(crate) fn again(self) -> Self {
+        match self {
+            Self::Force => Self::Force,
+            Self::Impact { .. } => Self::Impact { lasting: 0.0 },
+            Self::Reclosure { .. } => Self::Reclosure { lasting: 0.0 },
+        }
+    }
+}
+
 /// What a contact did in a bucket.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 struct Work {

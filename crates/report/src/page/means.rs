@@ -476,8 +476,8 @@ mod tests {
         assert_eq!(filter.told(), "20 ms, not across impacts");
     }
 
-    /// A vibration that grows from the impact on reaches its largest value 10 ms later: what is strong does no sooner, nor is it held, but follows what is slow
-    /// of it, also where other periods ring.
+    /// A slow vibration that grows from an impact on is largest 10 ms after it. The strong line has to follow it there, neither reaching the largest value
+    /// early nor staying at one value, even though fast vibrations ring in other periods.
     #[test]
     fn the_largest_values_after_an_impact_are_no_step() {
         let tau = 2.0 * std::f64::consts::PI;

@@ -156,8 +156,9 @@ pub struct PageRecorder {
     closed: Vec<Closed>,
     /// By blocks: whether they feel the impacts of a step. Memory.
     struck: Vec<bool>,
-    /// The points that have an impulse in the part of a step that is looked at.
-    struck_points: Vec<usize>,
+    /// By contact points: the number of the last part of a step in which they had an impulse; and that of the part looked at. Memory.
+    struck_in: Vec<u64>,
+    part: u64,
     /// By contact points: for how long of a step they stick and slip, s; and those that do. Memory.
     lasting: Vec<[f64; 2]>,
     pressing: Vec<usize>,
@@ -222,7 +223,8 @@ impl PageRecorder {
             closings: ClosingMonitor::default(),
             closed: Vec::new(),
             struck: Vec::new(),
-            struck_points: Vec::new(),
+            struck_in: vec![0; points],
+            part: 0,
             lasting: vec![[0.0; 2]; points],
             pressing: Vec::new(),
             scenery,
@@ -406,7 +408,7 @@ impl PageRecorder {
             self.find_struck(part.contacts, part.end, strikers);
             let is_impact = closed.iter().any(|of| of.closing == Closing::Impact && of.t == part.end);
             let mut before = None;
-            self.struck_points.clear();
+            self.part += 1;
             for contact in part.contacts {
                 let Some((pair, point)) = place(&self.layout, contact) else { continue };
                 let Some(drawn) = self.scenery.contacts.get(pair) else { continue };
@@ -421,25 +423,16 @@ impl PageRecorder {
                 };
                 if let Some(sum) = self.sums[pair] {
                     // The points of a pair follow each other; the time is that of the first.
-                    let of = match of {
-                        Of::Impact { .. } if before == Some(pair) => Of::Impact { lasting: 0.0 },
-                        Of::Reclosure { .. } if before == Some(pair) => Of::Reclosure { lasting: 0.0 },
-                        of => of,
-                    };
+                    let of = if before == Some(pair) { of.again() } else { of };
                     self.kept.curves.add(sum, [contact.p[0], contact.p[1]], of, ContactState::Open, 0.0);
                 }
                 before = Some(pair);
                 let slip = slip(contact, part.duration, part.balance);
                 let (point, state) = (drawn.first + point, contact.state());
-                // A point that touches two pieces of a profile, or two sides, has no more time than that.
-                let of = match of {
-                    Of::Impact { .. } if self.struck_points.contains(&point) => Of::Impact { lasting: 0.0 },
-                    Of::Reclosure { .. } if self.struck_points.contains(&point) => Of::Reclosure { lasting: 0.0 },
-                    of => of,
-                };
-                if of != Of::Force {
-                    self.struck_points.push(point);
-                }
+                // A point that touches two pieces of a profile, or two sides, comes twice, but the part of the step lasts once.
+                let last = self.struck_in.get_mut(point).filter(|_| of != Of::Force);
+                let again = last.is_some_and(|last| std::mem::replace(last, self.part) == self.part);
+                let of = if again { of.again() } else { of };
                 self.kept.curves.add(point, [contact.p[0], contact.p[1]], of, ContactState::Open, slip);
                 if let Some(lasting) = self.lasting.get_mut(point).filter(|_| state != ContactState::Open) {
                     self.pressing.extend((*lasting == [0.0; 2]).then_some(point));

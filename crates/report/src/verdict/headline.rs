@@ -29,7 +29,8 @@ pub(crate) fn headline(
     let judged = beams.iter().filter_map(|beam| Some((beam.decisive_part()?, beam)));
     if let Some((_, beam)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) {
         let part = beam.part_of_yield_strength.unwrap_or_default();
-        let (part, weight) = (percent(part, verdict), beam.about_weight(|part| percent(part, verdict)));
+        let told = |part: f64| percent(part, !verdict.is_empty());
+        let (part, weight) = (told(part), beam.about_weight(told));
         text.push_str(&format!("; `{}` was stressed to {part} of its yield strength{weight}", beam.beam));
     } else if verdict.is_empty() {
         let known = beams.iter().filter_map(|beam| Some((beam.largest_stress?, beam)));
@@ -48,8 +49,8 @@ pub(crate) fn headline(
 
 /// A part of the yield strength in percent, never one that hides on which side of it the stress is. With blocks it is the stress of impacts, which
 /// depends on step and elements: `about`.
-pub(crate) fn percent(part: f64, verdict: &[BodyVerdict]) -> String {
-    let (digits, cap, about) = if verdict.is_empty() { (3, 99.9, "") } else { (2, 99.0, "about ") };
+pub(crate) fn percent(part: f64, with_blocks: bool) -> String {
+    let (digits, cap, about) = if with_blocks { (2, 99.0, "about ") } else { (3, 99.9, "") };
     if part < 1.0 {
         return format!("{about}{} %", shortest((100.0 * part).min(cap), digits));
     }
@@ -385,8 +386,11 @@ mod tests {
 
     #[test]
     fn a_part_of_a_strength_is_on_its_side_of_it() {
-        assert_eq!([0.1234, 0.997, 0.9999].map(|part| percent(part, &[])), ["12.3 %", "99.7 %", "99.9 %"]);
-        let over = [1.0, 1.0004, 1.0481, 2.5].map(|part| percent(part, &[]));
+        assert_eq!([0.1234, 0.997, 0.9999].map(|part| percent(part, false)), ["12.3 %", "99.7 %", "99.9 %"]);
+        let over = [1.0, 1.0004, 1.0481, 2.5].map(|part| percent(part, false));
         assert_eq!(over, ["100 %", "just over 100 %", "105 %", "250 %"]);
+        // With blocks it is that of impacts.
+        let of_impacts = [0.1234, 0.9999, 1.0, 1.0004, 1.0481].map(|part| percent(part, true));
+        assert_eq!(of_impacts, ["about 12 %", "about 99 %", "about 100 %", "just over 100 %", "about 105 %"]);
     }
 }

@@ -1,6 +1,8 @@
 //! The public face of the crate.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+#[cfg(feature = "animation")]
+mod animation;
 mod energy;
 mod extremes;
 mod headlines;

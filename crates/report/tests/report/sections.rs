@@ -284,6 +284,23 @@ fn what_is_largest_all_along_is_so_from_the_start() {
     assert!(run.summary.deflections[0].w < -1e-3 && stress.stress > 1e7);
 }
 
+/// A load that goes slowly: the beam is never stressed as much as at the start, in the static equilibrium under all of it.
+#[test]
+fn the_stress_of_the_start_is_warned_of_if_it_is_the_largest() {
+    let text = "[time]\nend = '0.2 s'\nstep = '100 us'\n[material.s]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n\
+        yield_strength = '60 MPa'\n[beam.t]\nmaterial = 's'\nspan = '1 m'\nwidth = '5 cm'\nthickness = '2 cm'\nelements = 12\n\
+        start = 'static'\nself_weight = true\ndamping_ratio = { mode = 1, ratio = 0.1 }\n\
+        [signal.on]\nshape = 'constant'\n[signal.fall]\nshape = 'ramp'\nduration = '0.5 s'\nscale = -1\n\
+        [signal.off]\nshape = 'sum'\nterms = ['on', 'fall']\n[load.l]\non = 't'\nat = '0.5 m'\nforce = '-1000 N'\nsignal = 'off'\n";
+    let summary = crate::page::run("unloaded", text).summary;
+    let largest = summary.beams[0].largest_stress.unwrap();
+    assert_eq!(largest.t, 0.0);
+    let warning = summary.warnings.iter().find(|warning| warning.code == "yield").unwrap();
+    let told = format!("up to {} of 60 MPa at x = 500 mm, at the start", with_digits(largest.stress, "Pa", 4));
+    assert!(warning.text.contains(&told), "{told}: {}", warning.text);
+    assert_eq!(warning.first_t, Some(0.0));
+}
+
 /// A block at rest at the tip of a cantilever whose own weight alone takes it to 63 % of its yield strength.
 #[test]
 fn a_beam_is_judged_with_the_weight_that_its_model_leaves_out() {

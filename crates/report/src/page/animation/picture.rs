@@ -92,6 +92,8 @@ impl<'a> Painter<'a> {
         let ends = beam.supports.iter().enumerate().map(|(side, kind)| (at(side as f64), *kind, [-1.0, 1.0][side]));
         let inner = beam.inner.iter().map(|(x, kind)| (at(x / beam.span), *kind, 0.0));
         let supports: Vec<_> = ends.chain(inner).collect();
+        let dashpots: Vec<_> =
+            supports.iter().zip(&beam.dashpots).filter(|(_, has)| **has).map(|(of, _)| of.0).collect();
         if let Some(path) = self.path([outline.as_slice()], true) {
             self.fill(&path, BEAM);
             self.stroke(&path, BEAM, line);
@@ -102,6 +104,9 @@ impl<'a> Painter<'a> {
         let masses: Vec<_> = beam.masses.iter().map(|x| at(x / beam.span)).collect();
         for [(left, low, ..), (right, ..)] in foundations {
             self.foundation([left, right], low, size, line);
+        }
+        for (x, low, ..) in dashpots {
+            self.dashpot(x, low, size, line);
         }
         for (x, _, middle, _) in masses {
             if let Some(path) = PathBuilder::from_circle(x, middle, 0.6 * size) {
@@ -145,6 +150,26 @@ impl<'a> Painter<'a> {
         }
         path.move_to(left, low + 1.5 * size);
         path.line_to(right, low + 1.5 * size);
+        if let Some(path) = path.finish() {
+            self.stroke(&path, INK, 0.7 * line);
+        }
+    }
+
+    /// A dashpot beside a support under a beam: a piston in an open cylinder.
+    fn dashpot(&mut self, x: f32, low: f32, size: f32, line: f32) {
+        let mut path = PathBuilder::new();
+        let strokes: [&[(f32, f32)]; 4] = [
+            &[(0.0, 0.0), (1.2, 0.0), (1.2, 0.7)],
+            &[(0.9, 0.7), (1.5, 0.7)],
+            &[(0.75, 0.4), (0.75, 1.1), (1.65, 1.1), (1.65, 0.4)],
+            &[(1.2, 1.1), (1.2, 1.5)],
+        ];
+        for stroke in strokes {
+            for (k, (across, down)) in stroke.iter().enumerate() {
+                let (x, y) = (x + across * size, low + down * size);
+                if k == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
+            }
+        }
         if let Some(path) = path.finish() {
             self.stroke(&path, INK, 0.7 * line);
         }

@@ -154,7 +154,7 @@ struct PortraitSeries {
     /// The first point that is drawn strong and the first behind them, if not all are.
     #[serde(skip_serializing_if = "Option::is_none")]
     strong: Option<[usize; 2]>,
-    /// On how many others it lies, and the points from which on it does so and doesn't by turns, beginning where it does.
+    /// On how many others it lies, and the points at which that changes: the first is where it leaves them, the next where it lies on them again.
     over: u8,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     turns: Vec<usize>,

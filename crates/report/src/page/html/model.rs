@@ -30,11 +30,9 @@ pub(super) fn physical(tables: &[PhysicalTable]) -> String {
         if table.more > 0 {
             let _ = writeln!(html, "<p class=\"note\">and {} more, in the settings</p>", table.more);
         }
-    }
-    if !html.is_empty() {
-        html.push_str(
-            "<p class=\"note\">Size: width × height × depth. α = atan(b/H); p = √(3g/(4R)), R half the diagonal. ρA: mass per length.</p>\n",
-        );
+        if !table.note.is_empty() {
+            let _ = writeln!(html, "<p class=\"note\">{}</p>", escaped(&table.note));
+        }
     }
     html
 }

@@ -147,7 +147,8 @@ pub(crate) fn length_unit(of: LengthUnit, largest: f64) -> Unit {
     units.iter().find(fits).copied().unwrap_or(("nm", 1e9))
 }
 
-/// The prefix of a unit, with its factor, in which the largest of some values is at least 1 and below 1000.
+/// The prefix of a unit, with its factor, in which the largest of some values is at least 1 and below 1000; G also where it is larger, none where it is 0 or
+/// too small for all of them.
 pub(crate) fn prefix(largest: f64) -> Unit {
     let large = [("G", 1e-9), ("M", 1e-6), ("k", 1e-3), ("", 1.0)];
     let small = [("m", 1e3), ("µ", 1e6), ("n", 1e9), ("p", 1e12), ("f", 1e15), ("a", 1e18), ("z", 1e21)];
