@@ -2,7 +2,6 @@
 //! times as many instructions for two or three numbers.
 
 use crate::Vector;
-use teeter_contact::Block;
 
 /// u += a x.
 #[inline]
@@ -16,7 +15,7 @@ pub(crate) fn add_scaled<const D: usize>(u: &mut Vector<D>, a: &Vector<D>, x: f6
 /// block += a (s b)ᵀ.
 #[inline]
 #[cfg(any(feature = "bodies", feature = "beam"))]
-pub(crate) fn add_outer<const D: usize>(block: &mut Block<D>, a: &Vector<D>, b: &Vector<D>, s: f64) {
+pub(crate) fn add_outer<const D: usize>(block: &mut teeter_contact::Block<D>, a: &Vector<D>, b: &Vector<D>, s: f64) {
     let ([a], [b]) = (&a.data.0, &b.data.0);
     for (column, b) in block.data.0.iter_mut().zip(b) {
         let b = b * s;
