@@ -7,6 +7,9 @@ use teeter_integrator::State;
 use teeter_scenario::scene::{MotionScene, Placement, Scene, SupportingBody};
 use teeter_scenario::simulation::{BeamPlace, Layout};
 
+/// Ground steeper than this is a wall, rad.
+const WALL: f64 = std::f64::consts::FRAC_PI_4;
+
 /// Beams whose heights differ by less than this part of a block's size continue each other.
 const LEVEL: f64 = 0.01;
 
@@ -21,6 +24,8 @@ pub(super) struct Carrier {
     incline: f64,
     /// The slope of fixed ground that carries the block, directly or by others, as `incline` is of what carries it directly.
     foot: f64,
+    /// Whether it is other blocks that carry it.
+    upper: bool,
     /// The ground, if it carries the block, directly or by others, and has a profile.
     terrain: Option<Terrain>,
     /// Other beams that continue the one it stands on, by their numbers, and where their left ends are while their supports don't move, m.
@@ -140,19 +145,28 @@ impl Carrier {
         };
         let ground = scene.ground.as_ref().map(|ground| ground.incline);
         let terrain = if on_ground { Terrain::of(scene, layout, lowest) } else { None };
-        Self { on: of(support(number)), root: of(root), incline, foot, terrain, beside, ground }
+        Self {
+            on: of(support(number)),
+            root: of(root),
+            incline,
+            foot,
+            upper: lowest != number,
+            terrain,
+            beside,
+            ground,
+        }
     }
 
     /// The slope of the ground that carries the block, directly or by others, where it or the lowest of these is, rad; 0 of other carriers.
     pub(super) fn slope(&self, q: &[f64]) -> f64 {
-        if let Some(slope) = self.terrain.as_ref().and_then(|terrain| terrain.slope(q)) {
-            return slope;
-        }
-        match &self.root {
+        let root = match &self.root {
             On::Ground(range) => q[range.start + 2] + self.foot,
             On::Fixed => self.foot,
             On::Beam(..) | On::Block(_) => 0.0,
-        }
+        };
+        let slope = self.terrain.as_ref().and_then(|terrain| terrain.slope(q)).unwrap_or(root);
+        // Against a wall the lowest of a pile may lean, but no block on it stands on that.
+        if self.upper && slope.abs() > WALL { 0.0 } else { slope }
     }
 
     /// The slope of what carries the block, where the block is, rad.
