@@ -164,9 +164,10 @@ impl Carrier {
             On::Fixed => self.foot,
             On::Beam(..) | On::Block(_) => 0.0,
         };
-        let slope = self.terrain.as_ref().and_then(|terrain| terrain.slope(q)).unwrap_or(root);
-        // Against a wall the lowest of a pile may lean, but no block on it stands on that.
-        if self.upper && slope.abs() > WALL { 0.0 } else { slope }
+        let there = self.terrain.as_ref().and_then(|terrain| terrain.slope(q));
+        let slope = there.unwrap_or(root);
+        // A block may lean against a wall, but what is in a pile beside it stands on others.
+        if (self.upper || there.is_some()) && slope.abs() > WALL { 0.0 } else { slope }
     }
 
     /// The slope of what carries the block, where the block is, rad.
