@@ -95,6 +95,15 @@ pub struct SurfacePoint<const D: usize> {
     pub material: Vector<D>,
 }
 
+/// A point at which a surface may touch a side that lies over it, though it isn't under a corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Summit<const D: usize> {
+    /// The point.
+    pub point: SurfacePoint<D>,
+    /// Whether it is one because the surface is supported there: it bears even where the surface doesn't come out.
+    pub supported: bool,
+}
+
 /// The points x with n·x ≤ offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace<const D: usize> {
@@ -152,14 +161,15 @@ pub trait Geometry<const D: usize> {
     }
     /// Hands the points of the body's surface to `each`, from the left, at which it comes out
     /// furthest in a direction, more so than beside them, and whose feet lie between those of two
-    /// places: the humps of a beam under a base. None, the default, for a surface that is flat.
+    /// places: the humps of a beam under a base. Where it is supported from below it may bear without coming out, so these points belong to them, too,
+    /// but for those beside which it does come out. None, the default, for a surface that is flat and has no supports.
     fn summits(
         &self,
         body: BodyId,
         kinematics: Kinematics,
         direction: &Vector<D>,
         between: &[Vector<D>; 2],
-        each: &mut dyn FnMut(SurfacePoint<D>),
+        each: &mut dyn FnMut(Summit<D>),
     ) {
         let _ = (body, kinematics, direction, between, each);
     }

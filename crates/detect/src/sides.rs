@@ -3,7 +3,7 @@
 
 use crate::placed::{BodyFrame, Outline, Shapes};
 use crate::touch::Touch;
-use crate::{BodyId, Geometry, Kinematics, LawId, SurfacePoint, Vector};
+use crate::{BodyId, Geometry, Kinematics, LawId, Summit, SurfacePoint, Vector};
 
 /// The sides of a body's shape against a surface that bends, or ends: a beam that comes up between
 /// the feet of a block, or ends under its base. Its corners on the surface are those of a
@@ -28,7 +28,7 @@ pub struct SidePair {
 pub enum OnSide {
     /// An end of the surface: 0 the left one, 1 the right one.
     End(usize),
-    /// Where the surface comes out between the ends of the side, counted from the left.
+    /// Where the surface comes out or is supported between the ends of the side, counted from the left.
     Summit(usize),
     /// An end of the surface at the rounding about the side's first corner, or at a disc.
     EndAtRounding(usize),
@@ -201,7 +201,7 @@ fn end_at_rounding(
     Some(Touch { feature, points, normal, gap, room: f64::INFINITY })
 }
 
-/// Where a surface comes out between the ends of a side, from the left.
+/// Where a surface comes out or is supported between the ends of a side, from the left.
 struct Summits {
     points: [Option<SurfacePoint<2>>; MOST_SUMMITS],
 }
@@ -215,8 +215,8 @@ impl Summits {
         let mut chord = None;
         let mut points = [None; MOST_SUMMITS];
         let mut count = 0;
-        at.summits(pair.surface, pair.kinematics, &direction, &side.ends, &mut |summit| {
-            let x = (summit.place - side.ends[0]).dot(&along_side) / (length * length);
+        at.summits(pair.surface, pair.kinematics, &direction, &side.ends, &mut |Summit { point, supported }| {
+            let x = (point.place - side.ends[0]).dot(&along_side) / (length * length);
             let chord = *chord.get_or_insert_with(|| {
                 let feet = side.ends.map(|end| at.surface(pair.surface, pair.kinematics, &end));
                 feet.map(|foot| foot.map(|foot| direction.dot(&foot.place)))
@@ -227,9 +227,9 @@ impl Summits {
                 [Some(one), None] | [None, Some(one)] => one,
                 [None, None] => f64::NEG_INFINITY,
             };
-            let comes_out = direction.dot(&summit.place) - beside > FLAT * length;
-            if count < MOST_SUMMITS && comes_out && (0.0..=1.0).contains(&x) {
-                points[count] = Some(summit);
+            let bears = supported || direction.dot(&point.place) - beside > FLAT * length;
+            if count < MOST_SUMMITS && bears && (0.0..=1.0).contains(&x) {
+                points[count] = Some(point);
                 count += 1;
             }
         });

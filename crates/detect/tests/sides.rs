@@ -5,7 +5,7 @@ use nalgebra::{Rotation2, Vector2};
 use teeter_detect::conformance::check;
 use teeter_detect::{
     BodyId, Candidate, Candidates, ContactDetector, DetectorMemory, Geometry, Kinematics, LawId, OnSide, Polygon,
-    Rounded, Shape, ShapeDetector, SidePair, SurfacePoint,
+    Rounded, Shape, ShapeDetector, SidePair, Summit, SurfacePoint,
 };
 
 /// A body at (x, y, φ) over y = a cos(kx) + s x, from 0 to an end.
@@ -48,7 +48,7 @@ impl Geometry<2> for Wave {
         _: Kinematics,
         direction: &Vector2<f64>,
         between: &[Vector2<f64>; 2],
-        each: &mut dyn FnMut(SurfacePoint<2>),
+        each: &mut dyn FnMut(Summit<2>),
     ) {
         let (low, high) = (between[0].x.min(between[1].x).max(0.0), between[0].x.max(between[1].x).min(self.end));
         let rises = |x: f64| {
@@ -64,7 +64,7 @@ impl Geometry<2> for Wave {
                     let middle = 0.5 * (a + b);
                     if rises(middle) > 0.0 { a = middle } else { b = middle }
                 }
-                each(self.at(a));
+                each(Summit { point: self.at(a), supported: false });
             }
         }
     }

@@ -7,7 +7,7 @@ use crate::{Energy, ImpactLaw, Linearised, Mismatch, PairLaw, Size, Stretching, 
 use std::collections::HashMap;
 use std::ops::Range;
 use teeter_detect::{
-    BodyId, Candidate, Candidates, ContactDetector, DetectorMemory, Geometry, HalfSpace, Kinematics, LawId,
+    BodyId, Candidate, Candidates, ContactDetector, DetectorMemory, Geometry, HalfSpace, Kinematics, LawId, Summit,
     SurfacePoint, Wiring,
 };
 
@@ -609,7 +609,7 @@ impl<const D: usize> Geometry<D> for Placed<'_, D> {
         _: Kinematics,
         direction: &Vector<D>,
         between: &[Vector<D>; 2],
-        each: &mut dyn FnMut(SurfacePoint<D>),
+        each: &mut dyn FnMut(Summit<D>),
     ) {
         if let Some((_, part, number)) = self.model.owner(body) {
             part.system.summits(number, &self.q[part.q.clone()], direction, between, each);

@@ -3,7 +3,7 @@
 use crate::{Propagator, Stretching, Vector, small};
 use std::ops::Range;
 use teeter_contact::{Block, BlockSparse};
-use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
+use teeter_detect::{Frame, HalfSpace, Kinematics, Summit, SurfacePoint};
 
 /// The sizes of a subsystem.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -362,15 +362,15 @@ pub trait Bodies<const D: usize>: Send + Sync {
     }
 
     /// Hands the points of a body's surface to `each`, from the left, at which it comes out furthest in
-    /// a direction, more so than beside them, and whose feet lie between those of two places; see
-    /// [`teeter_detect::Geometry::summits`]. None, the default, for a surface that is flat.
+    /// a direction, more so than beside them, or is supported, and whose feet lie between those of two places; see
+    /// [`teeter_detect::Geometry::summits`]. None, the default, for a surface that is flat and has no supports.
     fn summits(
         &self,
         body: u32,
         q: &[f64],
         direction: &Vector<D>,
         between: &[Vector<D>; 2],
-        each: &mut dyn FnMut(SurfacePoint<D>),
+        each: &mut dyn FnMut(Summit<D>),
     ) {
         let _ = (body, q, direction, between, each);
     }

@@ -8,7 +8,7 @@ use nalgebra::{Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
 use teeter_beam::StaticError;
 use teeter_detect::{
-    BodyId, ContactDetector, DetectorMemory, Geometry, Kinematics, LawId, ShapeDetector, SidePair, SurfacePoint,
+    BodyId, ContactDetector, DetectorMemory, Geometry, Kinematics, LawId, ShapeDetector, SidePair, Summit, SurfacePoint,
 };
 use teeter_integrator::{BeamFace, EquilibriumError, Subsystem};
 use teeter_rigid::Pose;
@@ -357,7 +357,7 @@ impl Geometry<2> for OnBeam<'_> {
         _: Kinematics,
         direction: &Vector2<f64>,
         between: &[Vector2<f64>; 2],
-        each: &mut dyn FnMut(SurfacePoint<2>),
+        each: &mut dyn FnMut(Summit<2>),
     ) {
         self.surface.summits(BeamFace::Upper.fibre(), self.q, direction, between, each);
     }

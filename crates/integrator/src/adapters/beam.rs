@@ -21,8 +21,8 @@ use motion::MovingSupports;
 use nalgebra::Vector2;
 pub use shared::SharedFactors;
 use std::sync::Arc;
-use teeter_beam::{Beam, Deflection, Load, MatrixWeights};
-use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
+use teeter_beam::{Beam, Deflection, InnerSupport, Load, MatrixWeights};
+use teeter_detect::{Frame, HalfSpace, Kinematics, Summit, SurfacePoint};
 
 /// A beam with more dofs has no motion in closed form: the time that a step takes grows with their
 /// square.
@@ -246,6 +246,10 @@ impl Deflecting for Beam {
         self.node_positions()
     }
 
+    fn inner_supports(&self) -> &[InnerSupport] {
+        &self.spec().inner_supports
+    }
+
     fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
         Beam::deflection_at(self, q, x)
     }
@@ -428,7 +432,7 @@ impl Bodies<2> for BeamBody {
         q: &[f64],
         direction: &Vector2<f64>,
         between: &[Vector2<f64>; 2],
-        each: &mut dyn FnMut(SurfacePoint<2>),
+        each: &mut dyn FnMut(Summit<2>),
     ) {
         let (q, line) = self.split(q);
         line.of_body(body).summits(&*self.beam, q, direction, between, each);

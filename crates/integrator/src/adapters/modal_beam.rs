@@ -20,8 +20,8 @@ use crate::{
 };
 use nalgebra::{Matrix2, Vector2};
 use std::sync::{Arc, Mutex, PoisonError};
-use teeter_beam::{Beam, Deflection, DeflectionBounds, Load, ModalBasis, ModalError};
-use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
+use teeter_beam::{Beam, Deflection, DeflectionBounds, InnerSupport, Load, ModalBasis, ModalError};
+use teeter_detect::{Frame, HalfSpace, Kinematics, Summit, SurfacePoint};
 
 /// A straight level beam in the world, in modal coordinates η (m √kg).
 ///
@@ -262,6 +262,10 @@ impl Deflecting for Shapes {
         self.beam.node_positions()
     }
 
+    fn inner_supports(&self) -> &[InnerSupport] {
+        &self.beam.spec().inner_supports
+    }
+
     fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection> {
         let shape = self.beam.shape_at(x)?;
         let mut d = Deflection { w: 0.0, slope: 0.0 };
@@ -456,7 +460,7 @@ impl Bodies<2> for ModalBeam {
         q: &[f64],
         direction: &Vector2<f64>,
         between: &[Vector2<f64>; 2],
-        each: &mut dyn FnMut(SurfacePoint<2>),
+        each: &mut dyn FnMut(Summit<2>),
     ) {
         let (q, line) = self.split(q);
         line.of_body(body).summits(&self.shapes, q, direction, between, each);

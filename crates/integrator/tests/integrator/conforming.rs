@@ -150,7 +150,7 @@ fn summits_of_a_beam_are_where_a_fine_search_finds_them() {
                 let direction = Vector2::new(-tilt.sin(), tilt.cos()) * sign;
                 let between = [Vector2::new(0.12, 0.2), Vector2::new(0.44, 0.2)];
                 let mut found = Vec::new();
-                body.summits(number, &q, &direction, &between, &mut |summit| found.push(summit));
+                body.summits(number, &q, &direction, &between, &mut |summit| found.push(summit.point));
                 let n = 20_000;
                 let height = |k: usize| direction.dot(&place(0.02 + 0.32 * k as f64 / n as f64));
                 let searched: Vec<usize> =

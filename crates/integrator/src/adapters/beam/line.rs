@@ -4,8 +4,8 @@
 use super::{BeamFace, BeamSurface};
 use crate::Rows;
 use nalgebra::Vector2;
-use teeter_beam::{Deflection, DeflectionBounds};
-use teeter_detect::{Frame, HalfSpace, Kinematics, SurfacePoint};
+use teeter_beam::{Deflection, DeflectionBounds, Hold, InnerSupport};
+use teeter_detect::{Frame, HalfSpace, Kinematics, Summit, SurfacePoint};
 
 /// Deflection and slope along a beam as linear functions of its coordinates.
 pub(crate) trait Deflecting {
@@ -14,6 +14,9 @@ pub(crate) trait Deflecting {
 
     /// Where its elements meet, from 0 to the span, m: within an element the deflection is a cubic.
     fn nodes(&self) -> &[f64];
+
+    /// What holds it between its ends, each at one of the nodes.
+    fn inner_supports(&self) -> &[InnerSupport];
 
     /// Deflection and slope at x in [0, span] for coordinates `q`; `None` elsewhere.
     fn deflection_at(&self, q: &[f64], x: f64) -> Option<Deflection>;
@@ -133,14 +136,15 @@ impl Line {
     /// Hands the points at which the surface comes out furthest along `direction`, between two
     /// places, to `each`, from the left. The surface runs parallel to the axis, so that they belong
     /// to the sections at which the axis is at right angles to the direction; in an element the
-    /// slope is a parabola.
+    /// slope is a parabola. A support that has none in the elements beside it is handed over, too: a beam that is straight over it doesn't
+    /// come out, but it bears there, and can't give way as it does beside it.
     pub(crate) fn summits(
         &self,
         beam: &impl Deflecting,
         q: &[f64],
         direction: &Vector2<f64>,
         between: &[Vector2<f64>; 2],
-        each: &mut dyn FnMut(SurfacePoint<2>),
+        each: &mut dyn FnMut(Summit<2>),
     ) {
         let level = -direction.x / direction.y;
         // There the surface looks along the direction: that of an upper face never looks down.
@@ -154,7 +158,10 @@ impl Line {
         let rise = |x: f64| beam.deflection_at(q, x).map_or(0.0, |d| direction.y.signum() * (d.slope - level));
         let nodes = beam.nodes();
         let first = nodes.partition_point(|node| *node <= low).max(1);
+        let supports = beam.inner_supports().iter().filter(|inner| inner.support.holds()[0] != Hold::Free);
+        let is_supported = |x: f64| supports.clone().any(|inner| (inner.x - x).abs() <= SAME_PLACE * beam.span());
         let mut left = None;
+        let mut fell = false;
         for two in nodes[first - 1..].windows(2).take_while(|two| two[0] < high) {
             let (from, to) = (two[0].max(low), two[1].min(high));
             // The slope of a beam that shears jumps at a node under a force or a mass: an element has the slopes within it.
@@ -164,8 +171,15 @@ impl Line {
             let kink = (start <= 0.0 && left.is_some_and(|left| left > 0.0)).then_some(from);
             let fall = falls_through_zero([start, middle, end]).map(|t| begin + t * length);
             left = Some(end);
-            for point in [kink, fall].into_iter().flatten().filter_map(|x| self.at(beam, q, x)) {
-                each(point);
+            let is_bent = [start, middle, end].iter().any(|rise| rise.abs() > STRAIGHT);
+            let falls = is_bent && fall.is_some();
+            let node = two[0];
+            let bears = node > low && kink.is_none() && !(fell || falls) && is_supported(node);
+            fell = falls;
+            for (x, supported) in [(bears.then_some(node), true), (kink, false), (fall, false)] {
+                if let Some(point) = x.and_then(|x| self.at(beam, q, x)) {
+                    each(Summit { point, supported });
+                }
             }
         }
     }
@@ -199,6 +213,12 @@ fn normal_of(slope: f64) -> Vector2<f64> {
 
 /// Slopes at a node are taken this part of an element beside it.
 const EDGE: f64 = 1e-9;
+
+/// An element that rises and falls by no more than this against a side is straight but for rounding.
+const STRAIGHT: f64 = 1e-9;
+
+/// A node is at a support if they are no further apart than this part of the span.
+const SAME_PLACE: f64 = 1e-9;
 
 /// Where in (0, 1] a parabola with these values at 0, ½ and 1 goes from above zero to below.
 fn falls_through_zero([start, middle, end]: [f64; 3]) -> Option<f64> {
