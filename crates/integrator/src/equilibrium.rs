@@ -188,10 +188,17 @@ pub fn settle<const D: usize>(
     // convergence.
     let mut first = true;
     let mut size_before = f64::INFINITY;
+    // How many summits were known in the two rounds before.
+    let mut known_before = [0; 2];
     for round in 1..=ROUNDS {
         search.round(model, t, tau, limits, work, round)?;
         let Step { size, change, inertia, short } = search.step(model);
-        if !first && size > (GROWS * size_before).max(SETTLED) && inertia < 0.5 {
+        // A summit that was found in this round or the last one moves what bears, so that steps grow with any tangent.
+        search.summits.forget(search.stage.contacts());
+        let known = search.summits.count();
+        let same = known_before == [known; 2];
+        known_before = [known, known_before[0]];
+        if !first && same && size > (GROWS * size_before).max(SETTLED) && inertia < 0.5 {
             // The tangent was too soft: go back, and take a shorter τ.
             search.go_back();
             tau *= 0.25;

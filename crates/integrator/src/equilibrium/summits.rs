@@ -1,12 +1,16 @@
 //! Where an elastic surface has come out under a base: its summits, humps in the words of a scene.
 
 use super::between;
-use crate::{Model, Vector};
+use crate::{Contact, Model, Vector};
 use teeter_detect::{BodyId, Candidate, ContactId, Frame, Geometry};
 
 /// A summit within this part of the base's length of an earlier one is that one. Of two that are nearer to each other than rounds tell them apart,
 /// either could bear all, and the solver would look in vain for how much each does.
 const SAME: f64 = 1e-6;
+
+/// A summit that hasn't pressed for so many rounds is forgotten: it would be found again. Where hundreds were kept, most of them
+/// a hair's breadth apart, the solver would take seconds.
+const FORGOTTEN: u32 = 8;
 
 /// A summit that was found in some round.
 #[derive(Clone, Copy, Debug)]
@@ -17,12 +21,14 @@ struct Summit<const D: usize> {
     local_frame: Frame<D>,
     /// Its identity among the candidates of this round, if it is one of them.
     now: Option<ContactId>,
+    /// For how many rounds it hasn't pressed.
+    idle: u32,
 }
 
 impl<const D: usize> Summit<D> {
     fn found(model: &Model<D>, q: &[f64], candidate: &Candidate<D>, id: ContactId) -> Self {
         let local_frame = candidate.frame * rotation(model, q, candidate.sides[0].body);
-        Self { candidate: Candidate { id, ..*candidate }, local_frame, now: Some(candidate.id) }
+        Self { candidate: Candidate { id, ..*candidate }, local_frame, now: Some(candidate.id), idle: 0 }
     }
 
     /// Takes its place at `q`: the same point of the surface, and what of the base is over it by now.
@@ -54,14 +60,30 @@ fn rotation<const D: usize>(model: &Model<D>, q: &[f64], body: BodyId) -> Frame<
 /// All summits that were found so far.
 ///
 /// A surface that is held down where it came out comes out elsewhere: the summits of one round say nothing of those of the round before, and
-/// each round would let go of what that one held. So all are kept, at their places, and the contacts hold at all of them (the exchange
-/// method of semi-infinite programming).
+/// each round would let go of what that one held. So they are kept, at their places, as long as they press, and the contacts hold at all of them (the
+/// exchange method of semi-infinite programming).
 #[derive(Debug, Default)]
 pub(super) struct Summits<const D: usize> {
     known: Vec<Summit<D>>,
+    /// How many were ever found.
+    count: u32,
 }
 
 impl<const D: usize> Summits<D> {
+    /// How many were ever found.
+    pub(super) fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// Forgets those that haven't pressed for long, by the contacts of a round.
+    pub(super) fn forget(&mut self, contacts: &[Contact<D>]) {
+        self.known.retain_mut(|summit| {
+            let presses = contacts.iter().any(|contact| contact.id == summit.candidate.id && contact.p[0] > 0.0);
+            summit.idle = if presses { 0 } else { summit.idle + 1 };
+            summit.idle < FORGOTTEN
+        });
+    }
+
     /// Takes the summits out of the candidates at `q`, and puts all that are known in their place, up to a gap of `margin` (m).
     pub(super) fn exchange(&mut self, model: &Model<D>, q: &[f64], margin: f64, candidates: &mut Vec<Candidate<D>>) {
         let is_summit = |candidate: &Candidate<D>| model.detector().is_summit(candidate.id);
@@ -76,11 +98,11 @@ impl<const D: usize> Summits<D> {
                 let of_pair = known.id.pair() == candidate.id.pair() && of_base(&known);
                 of_pair && summit.now.is_none() && apart(known) <= SAME * length
             };
-            let number = self.known.len() as u32;
             if let Some(summit) = self.known.iter_mut().find(is_same) {
                 *summit = Summit::found(model, q, candidate, summit.candidate.id);
             } else {
-                let id = ContactId::new(candidate.id.pair(), u32::MAX - number);
+                let id = ContactId::new(candidate.id.pair(), u32::MAX - self.count);
+                self.count += 1;
                 self.known.push(Summit::found(model, q, candidate, id));
             }
         }
