@@ -170,6 +170,36 @@ fn summits_of_a_beam_are_where_a_fine_search_finds_them() {
     }
 }
 
+/// A straight beam comes out nowhere, but bears at a support between its ends; one that is bent there, at the crest beside it.
+#[test]
+fn a_support_bears_where_no_summit_is_beside_it() {
+    let section = Section::rectangle(0.03, 0.002, 69e9, 2700.0).unwrap();
+    let spec = BeamSpec::new(0.6, 12, section).support_at(0.2, Support::Pinned).support_at(0.4, Support::Guided);
+    let beam = Arc::new(Beam::new(spec).unwrap());
+    let body = BeamBody::new(Arc::clone(&beam), Vector2::new(0.1, 0.2), BeamSurface::Axis);
+    let found = |q: &[f64], from: f64, tilt: f64| {
+        let direction = Vector2::new(-tilt.sin(), tilt.cos());
+        let between = [Vector2::new(from, 0.2), Vector2::new(0.62, 0.2)];
+        let mut found = Vec::new();
+        let number = BeamFace::Upper.fibre();
+        body.summits(number, q, &direction, &between, &mut |summit| {
+            found.push((summit.point.material.x, summit.supported))
+        });
+        found
+    };
+    let mut q = vec![0.0; beam.dofs()];
+    // Guided, the beam is held against turning only.
+    let node = beam.node_positions()[4];
+    assert_eq!(found(&q, 0.15, 0.0), [(node, true)]);
+    assert_eq!(found(&q, 0.15, 1e-3), [(node, true)], "a side at an angle comes down on it, too");
+    assert_eq!(found(&q, 0.31, 0.0), [], "beside it");
+    beam.add_point_load(0.1, -1.0, &mut q).unwrap();
+    beam.add_point_load(0.3, -1.0, &mut q).unwrap();
+    beam.solve_static(&mut q).unwrap();
+    let crest = found(&q, 0.15, 0.0);
+    assert!(crest.len() == 1 && !crest[0].1 && (crest[0].0 - 0.2).abs() < 0.05, "{crest:?}");
+}
+
 #[test]
 fn beams_with_axial_forces_conform() {
     for axial in [Axial::Held, Axial::elastic([true, false])] {

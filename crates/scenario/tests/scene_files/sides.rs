@@ -157,7 +157,8 @@ const ON_A_HUMP: &str = "span = '1 m'\nwidth = '5 cm'\nthickness = '2 mm'\neleme
 
 /// With frames of the motion without impulses it sank in at the hump by 40 µm in 1 s, and turned by 3e-4 rad; within 1 cm of the support by
 /// three times as much, and where the corner is beside the crest (42 cm) the touch that each step looked for took 40 attempts. Flush over the support
-/// (50 cm) it sank by 0.4 µm.
+/// (50 cm) it sank by 0.4 µm. What is left, up to some 1e-8 rad, is how exactly the start knows where the crest is: contacts that are solved to
+/// 1e-14 m place it to about 1e-6 m.
 #[test]
 fn a_block_on_a_hump_stays_as_it_was_put() {
     let text = scene("1 s", ON_A_HUMP).replace("'600 kg/m^3'", "'2700 kg/m^3'").replace("'11 GPa'", "'69 GPa'");
@@ -166,7 +167,7 @@ fn a_block_on_a_hump_stays_as_it_was_put() {
         ("moreau-jean-closed", "48 cm", "100 us", false, 5e-8),
         ("moreau-jean-closed", "46 cm", "200 us", false, 1e-8),
         ("moreau-jean-projected", "48 cm", "200 us", false, 5e-8),
-        ("moreau-jean-located", "49 cm", "200 us", false, 1e-10),
+        ("moreau-jean-located", "49 cm", "200 us", false, 5e-8),
         ("moreau-jean-located", "50 cm", "200 us", false, 1e-12),
         ("moreau-jean-located", "42 cm", "200 us", true, 1e-8),
     ] {
