@@ -188,16 +188,16 @@ pub fn settle<const D: usize>(
     // convergence.
     let mut first = true;
     let mut size_before = f64::INFINITY;
-    // How many summits were known in the two rounds before.
-    let mut known_before = [0; 2];
+    // How many summits had been found deep inside their bases in the two rounds before.
+    let mut deep_before = [0; 2];
     for round in 1..=ROUNDS {
         search.round(model, t, tau, limits, work, round)?;
         let Step { size, change, inertia, short } = search.step(model);
-        // A summit that was found in this round or the last one moves what bears, so that steps grow with any tangent.
+        // A summit that was found in this round or the last one moves what bears: steps grow with any tangent, and are mostly inertia.
         search.summits.forget(search.stage.contacts());
-        let known = search.summits.count();
-        let same = known_before == [known; 2];
-        known_before = [known, known_before[0]];
+        let deep = search.summits.deep();
+        let same = deep_before == [deep; 2];
+        deep_before = [deep, deep_before[0]];
         if !first && same && size > (GROWS * size_before).max(SETTLED) && inertia < 0.5 {
             // The tangent was too soft: go back, and take a shorter τ.
             search.go_back();
@@ -214,7 +214,9 @@ pub fn settle<const D: usize>(
             stalled += 1;
         }
         let last = stalled >= STALLED || round == ROUNDS;
-        if change <= ROUNDING || (last && change <= SETTLED) {
+        // A summit that was just found isn't held yet.
+        let holds = same || round == ROUNDS;
+        if holds && (change <= ROUNDING || (last && change <= SETTLED)) {
             let named = |contact: &Contact<D>| Some((search.summits.identity(contact.id)?, contact.p / tau));
             let mut forces: Vec<_> = pressing().filter_map(named).collect();
             forces.sort_by_key(|(id, _)| *id);
@@ -237,7 +239,7 @@ pub fn settle<const D: usize>(
         if stalled >= CIRCLES {
             longest = 0.25 * tau;
         }
-        let grows = !first && (short || (inertia > INERT && change > SETTLED));
+        let grows = !first && (short || (same && inertia > INERT && change > SETTLED));
         let next = if grows { GROWTH * tau } else { tau }.min(longest);
         search.warm.clear();
         for contact in search.stage.contacts() {
@@ -338,8 +340,11 @@ impl<const D: usize> Search<D> {
             if !self.stage.add(model, &self.q, candidate, &self.warm, &self.nothing)? {
                 continue;
             }
-            let place = place_of(model, &self.q, &mut self.places, candidate);
-            let mut shift = tangential(&(candidate.frame * place.way(model, &self.q))) / tau;
+            let first = self.summits.first(candidate.id);
+            let known = Candidate { id: first.unwrap_or(candidate.id), ..*candidate };
+            let place = place_of(model, &self.q, &mut self.places, &known);
+            let frame = if first.is_some() { place.frame } else { candidate.frame };
+            let mut shift = tangential(&(frame * place.way(model, &self.q))) / tau;
             shift[0] = candidate.gap / tau;
             let u_free = self.stage.velocity(i, &self.v)?;
             // At rest all laws are Signorini's and Coulomb's.

@@ -8,6 +8,9 @@ use teeter_detect::{BodyId, Candidate, ContactId, Frame, Geometry};
 /// either could bear all, and the solver would look in vain for how much each does.
 const SAME: f64 = 1e-6;
 
+/// A summit that is found further inside its base than this part of the base's length is more than rounding.
+const DEEP: f64 = 1e-12;
+
 /// A summit that hasn't pressed for so many rounds is forgotten: it would be found again. Where hundreds were kept, most of them
 /// a hair's breadth apart, the solver would take seconds.
 const FORGOTTEN: u32 = 8;
@@ -23,12 +26,14 @@ struct Summit<const D: usize> {
     now: Option<ContactId>,
     /// For how many rounds it hasn't pressed.
     idle: u32,
+    /// The identity of the first one of its base.
+    first: ContactId,
 }
 
 impl<const D: usize> Summit<D> {
-    fn found(model: &Model<D>, q: &[f64], candidate: &Candidate<D>, id: ContactId) -> Self {
+    fn found(model: &Model<D>, q: &[f64], candidate: &Candidate<D>, [id, first]: [ContactId; 2]) -> Self {
         let local_frame = candidate.frame * rotation(model, q, candidate.sides[0].body);
-        Self { candidate: Candidate { id, ..*candidate }, local_frame, now: Some(candidate.id), idle: 0 }
+        Self { candidate: Candidate { id, ..*candidate }, local_frame, now: Some(candidate.id), idle: 0, first }
     }
 
     /// Takes its place at `q`: the same point of the surface, and what of the base is over it by now.
@@ -65,14 +70,15 @@ fn rotation<const D: usize>(model: &Model<D>, q: &[f64], body: BodyId) -> Frame<
 #[derive(Debug, Default)]
 pub(super) struct Summits<const D: usize> {
     known: Vec<Summit<D>>,
-    /// How many were ever found.
+    /// How many were ever found, and how many of these deep inside their base.
     count: u32,
+    deep: u32,
 }
 
 impl<const D: usize> Summits<D> {
-    /// How many were ever found.
-    pub(super) fn count(&self) -> u32 {
-        self.count
+    /// How many were found deep inside their base so far: where the number grows, what bears isn't held yet.
+    pub(super) fn deep(&self) -> u32 {
+        self.deep
     }
 
     /// Forgets those that haven't pressed for long, by the contacts of a round.
@@ -99,11 +105,15 @@ impl<const D: usize> Summits<D> {
                 of_pair && summit.now.is_none() && apart(known) <= SAME * length
             };
             if let Some(summit) = self.known.iter_mut().find(is_same) {
-                *summit = Summit::found(model, q, candidate, summit.candidate.id);
+                *summit = Summit::found(model, q, candidate, [summit.candidate.id, summit.first]);
             } else {
                 let id = ContactId::new(candidate.id.pair(), u32::MAX - self.count);
                 self.count += 1;
-                self.known.push(Summit::found(model, q, candidate, id));
+                self.deep += u32::from(candidate.gap < -DEEP * length);
+                let is_first =
+                    |known: &&Summit<D>| known.candidate.id.pair() == candidate.id.pair() && of_base(&&known.candidate);
+                let first = self.known.iter().find(is_first).map_or(id, |known| known.first);
+                self.known.push(Summit::found(model, q, candidate, [id, first]));
             }
         }
         candidates.retain(|candidate| !is_summit(candidate));
@@ -116,6 +126,12 @@ impl<const D: usize> Summits<D> {
             }
         }
         candidates.sort_unstable_by_key(|candidate| candidate.id);
+    }
+
+    /// The first summit that was found of the same base as this one; `None` for another contact. Slip counts from where that one was: all are one
+    /// place of a rigid base, and were each to hold it where it was when it was found, they would pull against each other.
+    pub(super) fn first(&self, id: ContactId) -> Option<ContactId> {
+        self.known.iter().find(|summit| summit.candidate.id == id).map(|summit| summit.first)
     }
 
     /// The identity of a contact among the detector's candidates: of a summit that isn't one of them now, that of the nearest one of its base. Those
