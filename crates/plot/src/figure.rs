@@ -56,8 +56,9 @@ const BARE_HEADER: f64 = 12.0;
 const FOOTER: f64 = 40.0;
 /// Between labels of the x axis.
 const LEAST_SPACE: f64 = 8.0;
-/// Height of a single panel, and of one of several.
-const HEIGHTS: [f64; 2] = [210.0, 140.0];
+/// Height of a single panel, of one of several, and of one of more than [`SEVERAL`], of which a page would have no room for a caption.
+const HEIGHTS: [f64; 3] = [210.0, 140.0, 112.0];
+const SEVERAL: usize = 4;
 
 /// The position of a panel in the figure.
 pub(crate) struct Frame<'a> {
@@ -225,8 +226,9 @@ impl Figure {
         let bare = !named && note.is_none();
         let header =
             if bare { BARE_HEADER } else { HEADER + self.legend.more_height(&entries, note.as_deref(), self.width) };
-        let several = self.panels.iter().filter(|panel| panel.is_plot()).count() > 1;
-        let own = panel.own_height_mm().map_or(HEIGHTS[usize::from(several)], |height| UNITS_PER_MM * height);
+        let plots = self.panels.iter().filter(|panel| panel.is_plot()).count();
+        let usual = HEIGHTS[usize::from(plots > 1) + usize::from(plots > SEVERAL)];
+        let own = panel.own_height_mm().map_or(usual, |height| UNITS_PER_MM * height);
         let inner = panel.bands_height().unwrap_or(own);
         (header, inner.max(self.legend.beside(&entries).1))
     }
@@ -272,6 +274,17 @@ mod tests {
         assert!((noted.height_mm() - figure.height_mm() - 2.0 * ROW / UNITS_PER_MM).abs() < 1e-9);
         let svg = noted.to_svg();
         assert!(lines.iter().all(|line| svg.contains(&format!(">{line}</text>"))), "{svg}");
+    }
+
+    #[test]
+    fn many_panels_leave_room_for_a_caption() {
+        let figure = |count: usize| {
+            let panel = || Panel::new(Axis::between("y", 0.0, 1.0)).with([Series::line("", [(0.0, 0.0), (1.0, 1.0)])]);
+            (0..count).fold(Figure::new("f", "t", Axis::between("x", 0.0, 1.0)), |figure, _| figure.panel(panel()))
+        };
+        let lower = figure(4).height_mm() / 4.0 - figure(6).height_mm() / 6.0;
+        assert!(lower > 7.0, "{lower} mm a panel");
+        assert!(figure(6).height_mm() < 220.0);
     }
 
     #[test]
