@@ -500,7 +500,8 @@
       const picture = scene.root.cloneNode(true);
       picture.removeAttribute("id");
       figure.append(picture);
-      htmlElement("figcaption", "", `${byId("time-readout").textContent} ${byId("scene-readout").textContent}`, figure);
+      const why = k === times.length - 1 ? "At the end" : "With a block turned furthest from its start";
+      htmlElement("figcaption", "", `${why}: ${byId("time-readout").textContent} ${byId("scene-readout").textContent}`, figure);
     }
     show(printed.frame);
     if (active.length > 3) plots.choose(...strongestContacts(3)); // More would be sheets of plots that look alike.
