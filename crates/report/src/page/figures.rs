@@ -486,3 +486,17 @@ fn stretches(borders: &[f64], forces: &ForceCurve) -> Vec<(f64, f64, Colour)> {
     }
     stretches
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_critical_angle_right_beyond_a_curve_is_on_its_axis() {
+        let values = [0.0, 10.0];
+        let on = |angles: &[f64]| near(angles, values.into_iter()).collect::<Vec<_>>();
+        assert_eq!(on(&[-0.5, 5.0, 10.9, 12.0, -20.0]), [-0.5, 10.9]);
+        let axis = Axis::around("\u{3c6}", values.into_iter().chain(on(&[-0.5])), 0.0);
+        assert!(axis.ends().0 < -0.7, "off the frame: {:?}", axis.ends());
+    }
+}

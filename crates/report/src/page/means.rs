@@ -360,7 +360,7 @@ mod tests {
             assert!(!is_inside || mean == 0.0, "{mean} at {t}");
         }
         // What only chatters has one mean across.
-        let chatters = means(&|t| if (t / 1e-3) as u64 % 2 == 0 { 6.0 } else { 0.0 });
+        let chatters = means(&|t| if ((t / 1e-3) as u64).is_multiple_of(2) { 6.0 } else { 0.0 });
         assert!(chatters.iter().all(|(_, mean)| (mean - 3.0).abs() < 0.5), "{chatters:?}");
     }
 

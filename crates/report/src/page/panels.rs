@@ -315,6 +315,7 @@ impl Panels {
             (0, _) => None,
             (1, 1) => Some("the point sticks and slips".to_owned()),
             (1, _) => Some(format!("{} sticks and slips", named[0])),
+            (2, 2) => Some("both points stick and slip".to_owned()),
             (some, all) if some == all => Some(format!("all {all} points stick and slip")),
             (some, all) if some > MOST_NAMED => Some(format!("{some} of {all} points stick and slip")),
             _ => Some(format!("{} stick and slip", named.join(", "))),
