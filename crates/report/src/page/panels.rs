@@ -308,18 +308,8 @@ impl Panels {
     /// Which points of a contact stick and slip by turns, as the subject of a sentence; nothing if none does.
     pub(crate) fn alternating(&self, contact: &ContactDrawn) -> Option<String> {
         let points = contact.points.iter().zip(&self.forces[contact.first..]);
-        let touching: Vec<_> = points.filter_map(|(point, forces)| Some((point, forces.as_ref()?))).collect();
-        let named: Vec<&str> =
-            touching.iter().filter(|(_, of)| of.alternates).map(|(point, _)| point.label.as_str()).collect();
-        match (named.len(), touching.len()) {
-            (0, _) => None,
-            (1, 1) => Some("the point sticks and slips".to_owned()),
-            (1, _) => Some(format!("{} sticks and slips", named[0])),
-            (2, 2) => Some("both points stick and slip".to_owned()),
-            (some, all) if some == all => Some(format!("all {all} points stick and slip")),
-            (some, all) if some > MOST_NAMED => Some(format!("{some} of {all} points stick and slip")),
-            _ => Some(format!("{} stick and slip", named.join(", "))),
-        }
+        let touching = points.filter_map(|(point, forces)| Some((point.label.as_str(), forces.as_ref()?.alternates)));
+        who_alternates(&touching.collect::<Vec<_>>())
     }
 
     /// The tangential force of all points of a contact together, if it is what is drawn.
@@ -405,6 +395,20 @@ impl Panels {
     }
 }
 
+/// Which points stick and slip by turns, of all with whether they do.
+fn who_alternates(points: &[(&str, bool)]) -> Option<String> {
+    let named: Vec<&str> = points.iter().filter(|(_, alternates)| *alternates).map(|(name, _)| *name).collect();
+    match (named.len(), points.len()) {
+        (0, _) => None,
+        (1, 1) => Some("the point sticks and slips".to_owned()),
+        (1, _) => Some(format!("{} sticks and slips", named[0])),
+        (2, 2) => Some("both points stick and slip".to_owned()),
+        (some, all) if some == all => Some(format!("all {all} points stick and slip")),
+        (some, all) if some > MOST_NAMED => Some(format!("{some} of {all} points stick and slip")),
+        _ => Some(format!("{} stick and slip", named.join(", "))),
+    }
+}
+
 /// Most points of a contact that are told by their names.
 const MOST_NAMED: usize = 3;
 
@@ -424,4 +428,20 @@ fn sum<'a>(curves: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
         total
     };
     curves.fold(Vec::new(), add)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::who_alternates;
+
+    #[test]
+    fn who_sticks_and_slips_by_turns_is_named() {
+        let of = |points: &[(&str, bool)]| who_alternates(points);
+        assert_eq!(of(&[("left", false), ("right", false)]), None);
+        assert_eq!(of(&[("left", true), ("right", false)]).unwrap(), "left sticks and slips");
+        assert_eq!(of(&[("left", true), ("right", true)]).unwrap(), "both points stick and slip");
+        assert_eq!(of(&[("left", true), ("right", true), ("hump 1", false)]).unwrap(), "left, right stick and slip");
+        let humps: Vec<(&str, bool)> = (0..9).map(|k| ("hump", k > 3)).collect();
+        assert_eq!(of(&humps).unwrap(), "5 of 9 points stick and slip");
+    }
 }
