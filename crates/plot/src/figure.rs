@@ -56,9 +56,9 @@ const BARE_HEADER: f64 = 12.0;
 const FOOTER: f64 = 40.0;
 /// Between labels of the x axis.
 const LEAST_SPACE: f64 = 8.0;
-/// Height of a single panel, of one of several, and of one of more than [`SEVERAL`], of which a page would have no room for a caption.
+/// Height of a single panel, of one of several, and of one of so many that a figure would be taller than [`TALL`] and leave no room for a caption.
 const HEIGHTS: [f64; 3] = [210.0, 140.0, 112.0];
-const SEVERAL: usize = 4;
+const TALL: f64 = 220.0 * UNITS_PER_MM;
 
 /// The position of a panel in the figure.
 pub(crate) struct Frame<'a> {
@@ -166,8 +166,12 @@ impl Figure {
     fn height(&self) -> f64 {
         let above = if self.headed { HEADING } else { 0.0 };
         let panels = self.panels.iter().map(|panel| self.heights(panel));
-        let noted = self.note_lines().len() as f64 * ROW;
-        above + panels.map(|(header, inner)| header + inner).sum::<f64>() + FOOTER + noted
+        above + panels.map(|(header, inner)| header + inner).sum::<f64>() + self.below()
+    }
+
+    /// Height of the axis and the note below the panels.
+    fn below(&self) -> f64 {
+        FOOTER + self.note_lines().len() as f64 * ROW
     }
 
     fn note_lines(&self) -> Vec<String> {
@@ -221,13 +225,25 @@ impl Figure {
 
     /// Heights of the space above a panel's frame and of the frame.
     fn heights(&self, panel: &Panel) -> (f64, f64) {
+        self.heights_with(panel, self.usual_height())
+    }
+
+    /// The height of panels without one of their own.
+    fn usual_height(&self) -> f64 {
+        if self.panels.iter().filter(|panel| panel.is_plot()).count() < 2 {
+            return HEIGHTS[0];
+        }
+        let panels = self.panels.iter().map(|panel| self.heights_with(panel, HEIGHTS[1]));
+        let all = panels.map(|(header, inner)| header + inner).sum::<f64>() + self.below();
+        HEIGHTS[1 + usize::from(all > TALL)]
+    }
+
+    fn heights_with(&self, panel: &Panel, usual: f64) -> (f64, f64) {
         let (entries, note) = (panel.entries(), panel.note_text());
         let named = self.legend != Legend::Beside && (!entries.is_empty() || !self.headed);
         let bare = !named && note.is_none();
         let header =
             if bare { BARE_HEADER } else { HEADER + self.legend.more_height(&entries, note.as_deref(), self.width) };
-        let plots = self.panels.iter().filter(|panel| panel.is_plot()).count();
-        let usual = HEIGHTS[usize::from(plots > 1) + usize::from(plots > SEVERAL)];
         let own = panel.own_height_mm().map_or(usual, |height| UNITS_PER_MM * height);
         let inner = panel.bands_height().unwrap_or(own);
         (header, inner.max(self.legend.beside(&entries).1))

@@ -223,7 +223,7 @@ impl Panel {
         self
     }
 
-    /// Sets the frame's height, mm. Default: 52.5 mm for a single panel, 35 mm for one of several, 28 mm for one of more than four.
+    /// Sets the frame's height, mm. Default: 52.5 mm for a single panel, 35 mm for one of several, 28 mm where the figure would be taller than 220 mm.
     /// No effect on bands.
     #[must_use]
     pub fn height_mm(mut self, height: f64) -> Self {
