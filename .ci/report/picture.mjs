@@ -29,7 +29,7 @@ export function leaningApart() {
   how.value = "arrows";
   how.dispatchEvent(new Event("change"));
   const slider = document.getElementById("time-slider");
-  const springs = new Set(forces.points.filter(({ course }) => course).map(({ contact }) => contact));
+  const springs = new Set(forces.compliant ?? []);
   const straight = scenery.contacts.map(({ beam, other, points }) =>
     beam === null && other === null && scenery.profile.length === 0 && points.every(({ crest }) => crest === null));
   const found = new Set();

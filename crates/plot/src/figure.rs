@@ -56,8 +56,9 @@ const BARE_HEADER: f64 = 12.0;
 const FOOTER: f64 = 40.0;
 /// Between labels of the x axis.
 const LEAST_SPACE: f64 = 8.0;
-/// Height of a single panel, and of one of several.
-const HEIGHTS: [f64; 2] = [210.0, 140.0];
+/// Height of a single panel, of one of several, and of one of so many that a figure would be taller than [`TALL`] and leave no room for a caption.
+const HEIGHTS: [f64; 3] = [210.0, 140.0, 112.0];
+const TALL: f64 = 220.0 * UNITS_PER_MM;
 
 /// The position of a panel in the figure.
 pub(crate) struct Frame<'a> {
@@ -165,8 +166,12 @@ impl Figure {
     fn height(&self) -> f64 {
         let above = if self.headed { HEADING } else { 0.0 };
         let panels = self.panels.iter().map(|panel| self.heights(panel));
-        let noted = self.note_lines().len() as f64 * ROW;
-        above + panels.map(|(header, inner)| header + inner).sum::<f64>() + FOOTER + noted
+        above + panels.map(|(header, inner)| header + inner).sum::<f64>() + self.below()
+    }
+
+    /// Height of the axis and the note below the panels.
+    fn below(&self) -> f64 {
+        FOOTER + self.note_lines().len() as f64 * ROW
     }
 
     fn note_lines(&self) -> Vec<String> {
@@ -220,13 +225,26 @@ impl Figure {
 
     /// Heights of the space above a panel's frame and of the frame.
     fn heights(&self, panel: &Panel) -> (f64, f64) {
+        self.heights_with(panel, self.usual_height())
+    }
+
+    /// The height of panels without one of their own.
+    fn usual_height(&self) -> f64 {
+        if self.panels.iter().filter(|panel| panel.is_plot()).count() < 2 {
+            return HEIGHTS[0];
+        }
+        let panels = self.panels.iter().map(|panel| self.heights_with(panel, HEIGHTS[1]));
+        let all = panels.map(|(header, inner)| header + inner).sum::<f64>() + self.below();
+        HEIGHTS[1 + usize::from(all > TALL)]
+    }
+
+    fn heights_with(&self, panel: &Panel, usual: f64) -> (f64, f64) {
         let (entries, note) = (panel.entries(), panel.note_text());
         let named = self.legend != Legend::Beside && (!entries.is_empty() || !self.headed);
         let bare = !named && note.is_none();
         let header =
             if bare { BARE_HEADER } else { HEADER + self.legend.more_height(&entries, note.as_deref(), self.width) };
-        let several = self.panels.iter().filter(|panel| panel.is_plot()).count() > 1;
-        let own = panel.own_height_mm().map_or(HEIGHTS[usize::from(several)], |height| UNITS_PER_MM * height);
+        let own = panel.own_height_mm().map_or(usual, |height| UNITS_PER_MM * height);
         let inner = panel.bands_height().unwrap_or(own);
         (header, inner.max(self.legend.beside(&entries).1))
     }
@@ -272,6 +290,17 @@ mod tests {
         assert!((noted.height_mm() - figure.height_mm() - 2.0 * ROW / UNITS_PER_MM).abs() < 1e-9);
         let svg = noted.to_svg();
         assert!(lines.iter().all(|line| svg.contains(&format!(">{line}</text>"))), "{svg}");
+    }
+
+    #[test]
+    fn many_panels_leave_room_for_a_caption() {
+        let figure = |count: usize| {
+            let panel = || Panel::new(Axis::between("y", 0.0, 1.0)).with([Series::line("", [(0.0, 0.0), (1.0, 1.0)])]);
+            (0..count).fold(Figure::new("f", "t", Axis::between("x", 0.0, 1.0)), |figure, _| figure.panel(panel()))
+        };
+        let lower = figure(4).height_mm() / 4.0 - figure(6).height_mm() / 6.0;
+        assert!(lower > 7.0, "{lower} mm a panel");
+        assert!(figure(6).height_mm() < 220.0);
     }
 
     #[test]

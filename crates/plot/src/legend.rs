@@ -139,7 +139,7 @@ impl<'a> Entry<'a> {
 /// Colour and dash of the sample of a line: of a line on others from the middle of a dash on, as its gap would not be seen at an end.
 fn sample_stroke(number: usize, dash: Dash, theme: Theme) -> String {
     match dash {
-        Dash::ByNumber => stroke(number, dash, theme),
+        Dash::ByNumber | Dash::InPart => stroke(number, dash, theme),
         Dash::Over(lines) => {
             format!("{} stroke-dashoffset=\"{}\"", stroke(number, dash, theme), 0.5 * over(lines)[0])
         }
@@ -290,6 +290,7 @@ pub(crate) fn stroke(number: usize, dash: Dash, theme: Theme) -> String {
             let [dash, gap] = over(lines);
             format!("{dash} {gap}")
         }
+        Dash::InPart => "3 2".to_owned(),
     };
     let colour = Colour::Series(number);
     format!("stroke=\"{}\" stroke-dasharray=\"{dash}\"", colour.value(theme))

@@ -57,5 +57,5 @@ pub use legend::{LEGEND_WIDTH, Legend, legend_width, text_width};
 pub use panel::{Band, Panel};
 #[cfg(feature = "pdf")]
 pub use pdf::{PdfError, PdfFigure, svg_to_pdf};
-pub use series::{Coincident, MOST_OVER, Mark, Series, coincident};
+pub use series::{Coincident, MOST_OVER, Mark, Series, coincident, most_over};
 pub use theme::{Colour, Theme};

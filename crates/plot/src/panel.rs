@@ -2,7 +2,7 @@
 
 use crate::figure::{Frame, LEFT};
 use crate::legend::{Entry, Legend, Symbol, area_style, mark_path, mark_style, stroke, text_width};
-use crate::series::Drawn;
+use crate::series::{Dash, Drawn};
 use crate::theme::{Colour, Theme};
 use crate::{Axis, Series, escaped};
 use std::fmt::Write;
@@ -223,7 +223,7 @@ impl Panel {
         self
     }
 
-    /// Sets the frame's height, mm. Default: 52.5 mm for a single panel, 35 mm for one of several.
+    /// Sets the frame's height, mm. Default: 52.5 mm for a single panel, 35 mm for one of several, 28 mm where the figure would be taller than 220 mm.
     /// No effect on bands.
     #[must_use]
     pub fn height_mm(mut self, height: f64) -> Self {
@@ -329,19 +329,23 @@ impl Panel {
             let _ = writeln!(svg, "<path d=\"{path}\" fill=\"{colour}\" stroke=\"none\"/>");
         }
         Self::draw_marks(svg, &inner, theme, y, series, true);
+        // What is alone in its panel hides no other by filling its range.
+        let is_alone = series.len() < 2;
         for (k, line) in series.iter().enumerate().filter(|(_, series)| series.drawn == Drawn::Line) {
             let path = line_path(line.points(), |x| frame.px(x), py);
-            let stroke = stroke(line.number_at(k), line.dash, theme);
+            let dashed = stroke(line.number_at(k), line.dash, theme);
             let weight = match line.faint {
                 true => "stroke-width=\".5\" stroke-opacity=\".2\"",
-                false if is_dense(line.points(), frame, py) => "stroke-width=\"1.1\" stroke-opacity=\".45\"",
+                false if !is_alone && is_dense(line.points(), frame, py) => {
+                    "stroke-width=\"1.1\" stroke-opacity=\".45\""
+                }
                 false => "stroke-width=\"1.1\"",
             };
-            let _ = writeln!(svg, "<path d=\"{path}\" {stroke} {weight}/>");
+            let _ = writeln!(svg, "<path d=\"{path}\" {dashed} {weight}/>");
             if let Some(alone) = line.solid_stretches() {
                 let path = line_path(&alone, |x| frame.px(x), py);
-                let colour = Colour::Series(line.number_at(k)).value(theme);
-                let _ = writeln!(svg, "<path d=\"{path}\" stroke=\"{colour}\" {weight}/>");
+                let solid = stroke(line.number_at(k), Dash::ByNumber, theme);
+                let _ = writeln!(svg, "<path d=\"{path}\" {solid} {weight}/>");
             }
         }
         svg.push_str("</g>\n");
@@ -660,13 +664,15 @@ mod tests {
     }
 
     #[test]
-    fn what_fills_its_range_is_pale() {
-        let pale = |count: u32| {
+    fn what_fills_its_range_is_pale_beside_others() {
+        let pale = |count: u32, others: &[f64]| {
             let points = (0..count).map(|k| (f64::from(k) / f64::from(count), f64::from(k % 2)));
-            let panel = Panel::new(Axis::between("y", 0.0, 1.0)).with([Series::line("", points)]);
+            let others = others.iter().map(|y| Series::line("", [(0.0, *y), (1.0, *y)]));
+            let panel = Panel::new(Axis::between("y", 0.0, 1.0)).with([Series::line("", points)]).with(others);
             Figure::new("f", "t", Axis::between("x", 0.0, 1.0)).panel(panel).to_svg().contains("stroke-opacity")
         };
-        assert!(pale(1000) && !pale(100));
+        assert!(pale(1000, &[0.5]) && !pale(100, &[0.5]));
+        assert!(!pale(1000, &[]), "alone it hides nothing");
     }
 
     #[test]

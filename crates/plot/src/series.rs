@@ -1,5 +1,7 @@
 //! The data series of a panel.
 
+use crate::theme::SERIES_COLOURS;
+
 /// A named series of points: a line, a staircase, or marks.
 ///
 /// Where a value is not finite (on a logarithmic axis, not positive), a line is broken and a mark
@@ -13,7 +15,7 @@ pub struct Series {
     pub(crate) drawn: Drawn,
     pub(crate) dash: Dash,
     pub(crate) faint: bool,
-    /// Of a line on others, by points, where it doesn't lie on any of them; empty for nowhere.
+    /// Of a line on others, by points, where it doesn't lie on any of them, and of one that is dashed in part, where it isn't; empty for nowhere.
     pub(crate) alone: Vec<bool>,
 }
 
@@ -24,6 +26,8 @@ pub(crate) enum Dash {
     ByNumber,
     /// It lies on another line, or on so many that lie on each other.
     Over(u8),
+    /// It isn't all along of one quantity.
+    InPart,
 }
 
 /// How a series is drawn.
@@ -150,6 +154,7 @@ impl Series {
         let hides = || 20 * away().count() > self.points.len() && 2 * hidden() > away().count();
         self.drawn == Drawn::Line
             && other.drawn == Drawn::Line
+            && self.dash != Dash::InPart
             && self.faint == other.faint
             && self.points.len() == other.points.len()
             && pairs().all(|(a, b)| a.0 == b.0)
@@ -171,10 +176,17 @@ impl Series {
         self
     }
 
+    /// Dashes a line but about the points for which this is true, as it is of another quantity there. No effect without such points.
+    #[must_use]
+    pub fn dashed_but_at(self, points: Vec<bool>) -> Self {
+        let dash = if points.contains(&true) { Dash::InPart } else { self.dash };
+        Self { dash, alone: points, ..self }
+    }
+
     /// The stretches of a dashed line that are solid: the points at which it lies on no other one and their neighbours, with gaps between.
     pub(crate) fn solid_stretches(&self) -> Option<Vec<(f64, f64)>> {
         let is_alone = |k: usize| self.alone.get(k).copied().unwrap_or(false);
-        let of_dashed = matches!(self.dash, Dash::Over(_)) && self.alone.contains(&true);
+        let of_dashed = self.dash != Dash::ByNumber && self.alone.contains(&true);
         of_dashed.then(|| {
             let points = self.points.iter().enumerate();
             let solid = |k: usize| is_alone(k) || is_alone(k + 1) || k.checked_sub(1).is_some_and(is_alone);
@@ -185,7 +197,9 @@ impl Series {
     /// Dashes each line that lies within `tolerance` of an earlier one, or does so for half of its length away from 0, where it does: that one
     /// shows in the gaps. Of several on each other each later one has shorter dashes. Returns how many lie on each other where these are too many for that.
     pub(crate) fn tell_apart(lines: &mut [Self], tolerance: f64) -> usize {
-        let found = coincident(lines.len(), |k, earlier| lines[k].lies_on(&lines[earlier], tolerance));
+        let numbers = lines.iter().enumerate().filter(|(_, line)| line.drawn == Drawn::Line);
+        let most_over = most_over(numbers.map(|(k, line)| line.number_at(k)));
+        let found = coincident(lines.len(), most_over, |k, earlier| lines[k].lies_on(&lines[earlier], tolerance));
         for k in (0..lines.len()).filter(|k| found.over[*k] > 0) {
             let (earlier, later) = lines.split_at_mut(k);
             let line = &mut later[0];
@@ -220,26 +234,37 @@ impl Series {
 /// On so many others a line may lie for each to show in the gaps of those above it.
 pub const MOST_OVER: u8 = 3;
 
+/// On so many others a line of a plot with these numbers may lie and be dashed for it: on none where some numbers are told apart by dashes, which would
+/// then mean either.
+#[must_use]
+pub fn most_over(mut numbers: impl Iterator<Item = usize>) -> u8 {
+    if numbers.any(|number| number >= SERIES_COLOURS) { 0 } else { MOST_OVER }
+}
+
 /// Which lines lie on others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Coincident {
-    /// On how many others that lie on each other each line lies; 0 too where these are more than [`MOST_OVER`], whose dashes would be
-    /// too short to be seen.
+    /// On how many others that lie on each other each line lies; 0 too where these are more than may be dashed.
     pub over: Vec<u8>,
     /// How many lines lie on each other where these are that many; 0 if nowhere.
     pub too_many: usize,
 }
 
-/// Finds out of `count` lines, drawn in their order, those that lie on others, where the first number of `lies_on` is that of the later one.
+/// Finds out of `count` lines, drawn in their order, those that lie on others, where the first number of `lies_on` is that of the later one. Of
+/// those that lie on more than `most` others (see [`most_over`]) none is dashed.
 ///
 /// ```
 /// // Line 1 lies on line 0.
-/// let found = teeter_plot::coincident(3, |line, earlier| (line, earlier) == (1, 0));
+/// let lies_on = |line, earlier| (line, earlier) == (1, 0);
+/// let found = teeter_plot::coincident(3, teeter_plot::most_over(0..3), lies_on);
 /// assert_eq!((found.over, found.too_many), (vec![0, 1, 0], 0));
+/// // The eighth line has the colour of the first one, and dashes of its own.
+/// let found = teeter_plot::coincident(8, teeter_plot::most_over(0..8), lies_on);
+/// assert_eq!((found.over, found.too_many), (vec![0; 8], 2));
 /// ```
 #[must_use]
-pub fn coincident(count: usize, lies_on: impl Fn(usize, usize) -> bool) -> Coincident {
+pub fn coincident(count: usize, most: u8, lies_on: impl Fn(usize, usize) -> bool) -> Coincident {
     let mut over = vec![0_usize; count];
     // The lines of each group have the number of its first one.
     let mut group: Vec<usize> = (0..count).collect();
@@ -253,13 +278,13 @@ pub fn coincident(count: usize, lies_on: impl Fn(usize, usize) -> bool) -> Coinc
     let mut too_many = 0;
     for number in 0..count {
         let own = || (0..count).filter(|line| group[*line] == number);
-        if own().any(|line| over[line] > usize::from(MOST_OVER)) {
+        if own().any(|line| over[line] > usize::from(most)) {
             too_many = too_many.max(own().count());
             let lines: Vec<usize> = own().collect();
             lines.into_iter().for_each(|line| over[line] = 0);
         }
     }
-    let over = over.into_iter().map(|lines| u8::try_from(lines).unwrap_or(MOST_OVER));
+    let over = over.into_iter().map(|lines| u8::try_from(lines).unwrap_or(most));
     Coincident { over: over.collect(), too_many }
 }
 
@@ -279,7 +304,7 @@ mod tests {
 
     #[test]
     fn of_more_lines_on_each_other_than_dashes_can_show_none_is_dashed() {
-        let line = |shift: f64| Series::line("", (0..9).map(|k| (f64::from(k), 5.0 + shift)));
+        let line = |shift: f64| Series::line("", (0..9).map(|k| (f64::from(k), 5.0 + shift))).number(0);
         let pair = [7.0, 7.0].map(line);
         let mut lines: Vec<Series> = (0..16).map(|_| line(0.0)).chain(pair).collect();
         assert_eq!(Series::tell_apart(&mut lines, 0.1), 16);
@@ -287,6 +312,18 @@ mod tests {
         assert_eq!(lines[17].dash, Dash::Over(1));
         let mut four: Vec<Series> = (0..4).map(|_| line(0.0)).collect();
         assert_eq!((Series::tell_apart(&mut four, 0.1), four[3].dash), (0, Dash::Over(3)));
+    }
+
+    #[test]
+    fn a_line_told_by_its_dashes_keeps_them_and_no_other_has_any() {
+        let line = |number: usize, shift: f64| {
+            Series::line("", (0..9).map(|k| (f64::from(k), f64::from(k) + if k < 7 { 0.0 } else { shift })))
+                .number(number)
+        };
+        // The eighth and the ninth on the first one, and two of one colour beside each other.
+        let mut lines = [line(0, 0.0), line(7, 5.0), line(8, -5.0), line(1, 9.0)];
+        assert_eq!(Series::tell_apart(&mut lines, 0.1), 4);
+        assert!(lines.iter().all(|line| line.dash == Dash::ByNumber && line.solid_stretches().is_none()));
     }
 
     #[test]
@@ -310,6 +347,17 @@ mod tests {
         assert_eq!((leaves(7, 5.0), leaves(3, 5.0)), (Dash::Over(1), Dash::ByNumber));
         // At 0 both are often, and hide nothing that matters.
         assert_eq!(leaves(7, 0.0), Dash::ByNumber);
+    }
+
+    #[test]
+    fn a_line_of_two_quantities_is_dashed_where_it_is_of_the_other() {
+        let line = || Series::line("", (0..9).map(|k| (f64::from(k), 5.0)));
+        let mut lines = [line(), line().dashed_but_at((0..9).map(|k| k < 3).collect())];
+        assert_eq!(Series::tell_apart(&mut lines, 0.1), 0);
+        assert_eq!(lines[1].dash, Dash::InPart, "also where it lies on another one");
+        let solid = lines[1].solid_stretches().unwrap();
+        assert_eq!(solid.iter().filter(|(_, y)| y.is_finite()).count(), 4);
+        assert_eq!(line().dashed_but_at(vec![false; 9]), Series { alone: vec![false; 9], ..line() });
     }
 
     #[test]

@@ -9,8 +9,8 @@
   /** The plots over time that the page has in common with the figures: units, scales and what is left out are decided there. */
   function addPanels(late) {
     for (const panel of data.panels.filter((one) => one.late === late)) {
-      const series = panel.series.map(({ label, index, y, raw, at_borders: atBorders, ...rest }) =>
-        ({ label, index, y, raw, t: atBorders ? forces.borders : curves.t, known: knownOf(rest) }));
+      const series = panel.series.map(({ label, index, y, raw, turns, at_borders: atBorders, ...rest }) =>
+        ({ label, index, y, raw, turns, t: atBorders ? forces.borders : curves.t, known: knownOf(rest) }));
       plots.add({
         id: panel.id, contact: panel.contact, title: panel.title, unit: panel.unit, series, guides: panel.guides, least: panel.least,
         cut: panel.cut, height: late ? 160 : 170,
@@ -138,10 +138,11 @@
       }),
       height: plots.margin.top + plots.margin.bottom + plots.rowHeight * points.length,
     });
+    const [, turning] = forces.alternating?.find(([of]) => of === k) ?? [];
     const [, unseen] = forces.unseen_slip?.find(([of]) => of === k) ?? [];
     const notes = [
       points.some(({ state }) => state.includes("b")) ? "Presses briefly: in at most half of the steps, as what strikes or chatters." : "",
-      forces.alternating?.includes(k) ? `Sticks and slips by turns, so that its tangential force changes from step to step: the band has what it does in most of ${forces.bucket}.` : "",
+      turning ? sentence(`${turning} by turns, so that the tangential force changes from step to step: the band has what is done in most of ${forces.bucket}`) : "",
       unseen ? `Slip of less than ${unseen} at a time is drawn as sticking.` : "",
     ].filter(Boolean);
     if (notes.length) htmlElement("p", "note", notes.join(" "), byId(`panel-state-${k}`));
@@ -499,7 +500,8 @@
       const picture = scene.root.cloneNode(true);
       picture.removeAttribute("id");
       figure.append(picture);
-      htmlElement("figcaption", "", `${byId("time-readout").textContent} ${byId("scene-readout").textContent}`, figure);
+      const why = k === times.length - 1 ? "At the end" : "With a block turned furthest from its start";
+      htmlElement("figcaption", "", `${why}: ${byId("time-readout").textContent} ${byId("scene-readout").textContent}`, figure);
     }
     show(printed.frame);
     if (active.length > 3) plots.choose(...strongestContacts(3)); // More would be sheets of plots that look alike.

@@ -256,5 +256,7 @@ function deflection(beam, frame, x) {
   return unit * (w[first] + (position - i) * (w[first + 1] - w[first]));
 }
 
-const colour = (index) => `var(--c${index % 7})`;
-const dash = (index) => ["none", "6 3", "2 2.5"][Math.floor(index / 7) % 3];
+/** So many curves have a colour each; beyond, they also have dashes. */
+const colours = 7;
+const colour = (index) => `var(--c${index % colours})`;
+const dash = (index) => ["none", "6 3", "2 2.5"][Math.floor(index / colours) % 3];

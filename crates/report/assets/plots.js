@@ -93,8 +93,8 @@ const plots = (() => {
 
   /** The dashes of a line on others, as in the figures: all have the same period, each half the dashes of the one below. */
   const over = (lines) => [10 / 2 ** lines, 10 - 10 / 2 ** lines];
-  const stroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${series.over ? over(series.over).join(" ") : dash(series.index)}; fill: none`;
-  const solidStroke = (series) => `stroke: ${colour(series.index)}; fill: none`;
+  const stroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${series.over ? over(series.over).join(" ") : series.inPart ? "4 3" : dash(series.index)}; fill: none`;
+  const solidStroke = (series) => `stroke: ${colour(series.index)}; stroke-dasharray: ${dash(series.index)}; fill: none`;
   /** Of the sample of a line on others in a legend: from the middle of a dash on, as its gap would not be seen at an end. */
   const offset = (series) => (series.over ? `; stroke-dashoffset: ${over(series.over)[0] / 2}` : "");
 
@@ -102,11 +102,12 @@ const plots = (() => {
   const largestOf = ({ series, cut }) => Math.min(cut?.limit ?? Infinity, series.reduce((most, { y, upper }) => [y, upper ?? []].reduce((largest, values) =>
     values.reduce((size, x) => Math.max(size, Math.abs(x ?? 0) || 0), largest), most), 0));
 
-  /** On more others than this a line isn't dashed: its dashes would be too short to be seen. */
-  const mostOver = 3;
+  /** On more others than this a line isn't dashed: its dashes would be too short to be seen; on none where some numbers are told apart by dashes, which would
+      then mean either. */
+  const mostOver = (series) => (series.some(({ index }) => index >= colours) ? 0 : 3);
 
-  /** Of a dashed line, its values where it lies on none of the others, and beside that: there it is solid. */
-  const alone = (series, values) => (series.over ? values.map((x, i) => (series.alone[i - 1] || series.alone[i] || series.alone[i + 1] ? x : null)) : null);
+  /** Of a dashed line, its values where it lies on none of the others, or is no other quantity, and beside that: there it is solid. */
+  const alone = (series, values) => (series.over || series.inPart ? values.map((x, i) => (series.alone[i - 1] || series.alone[i] || series.alone[i + 1] ? x : null)) : null);
 
   /** Dashes a line that lies on earlier ones where it does, which then show in the gaps: within 1 % of what the panel shows, all along or for half of its length away from 0.
       Where too many lie on each other none is dashed, and the panel says how many they are. */
@@ -117,7 +118,7 @@ const plots = (() => {
       .reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
     const within = 0.01 * Math.min(Math.max(high - low, leastRange(low, high, panel.least ?? 0)), 2 * (cut?.limit ?? Infinity));
     const near = (a, b) => {
-      if (a.t !== b.t || a.upper || b.upper || a.raw !== b.raw || a.y.length !== b.y.length) return false;
+      if (a.t !== b.t || a.inPart || a.upper || b.upper || a.raw !== b.raw || a.y.length !== b.y.length) return false;
       const same = a.y.map((x, i) => Math.abs(x - b.y[i]) <= within);
       const away = same.filter((_, i) => Math.abs(a.y[i]) > within);
       return same.every(Boolean) || (20 * away.length > same.length && 2 * away.filter(Boolean).length > away.length);
@@ -135,7 +136,7 @@ const plots = (() => {
     panel.tooMany = 0;
     for (const number of new Set(group)) {
       const own = series.filter((_, k) => group[k] === number);
-      if (!own.some((line) => line.over > mostOver)) continue;
+      if (!own.some((line) => line.over > mostOver(series))) continue;
       panel.tooMany = Math.max(panel.tooMany, own.length);
       own.forEach((line) => { line.over = 0; });
     }
@@ -149,8 +150,12 @@ const plots = (() => {
     panel.element = htmlElement("section", "panel", undefined, host);
     panel.element.id = `panel-${panel.id}`;
     panel.element.dataset.unit = panel.unit ?? "";
+    // Of a line that is of two quantities the parts are known.
+    for (const series of panel.series) series.inPart = !panel.portrait && series.turns !== undefined;
     if (!panel.portrait) tellApart(panel);
-    else panel.series.forEach((series) => { series.alone = series.t.map((_, i) => (series.turns ?? []).filter((turn) => turn <= i).length % 2 === 1); });
+    for (const series of panel.series.filter(({ inPart }) => inPart || panel.portrait)) {
+      series.alone = series.t.map((_, i) => (series.turns ?? []).filter((turn) => turn <= i).length % 2 === 1);
+    }
     panel.most = largestOf(panel);
     head(panel, panel.element);
     panel.svg = svgElement("svg", { class: "plot", role: "img", tabindex: 0, "aria-label": spoken.plot(panel) }, panel.element);
@@ -169,6 +174,10 @@ const plots = (() => {
     return view[0] + Math.min(1, Math.max(0, part)) * (view[1] - view[0]);
   };
 
+  /** Guides right beyond these ends, which would lie on the frame, or hardly outside of it. */
+  const nearGuides = ({ guides = [] }, low, high) =>
+    guides.filter((at) => (at < low && at > low - 0.1 * (high - low)) || (at > high && at < high + 0.1 * (high - low)));
+
   /** Lowest and highest of what is in view, with some room. */
   function range(panel) {
     let [low, high] = [Infinity, -Infinity];
@@ -185,6 +194,7 @@ const plots = (() => {
       }
     }
     if (panel.floor !== undefined) see(panel.floor);
+    nearGuides(panel, low, high).forEach(see);
     if (panel.cut && !panel.whole) [low, high] = [Math.max(low, -panel.cut.limit), Math.min(high, panel.cut.limit)];
     if (!(low <= high)) return [-1, 1];
     // What varies by less than that is still: its rounding is not for the eye.
@@ -234,10 +244,10 @@ const plots = (() => {
     return turns > width() - margin.left - margin.right;
   }
 
-  function curve(series, x, y) {
+  function curve(series, x, y, isAlone) {
     if (series.upper) return `<path class="area" style="fill: ${colour(series.index)}" d="${area(series, x, y)}"/>`;
-    const kind = `curve${series.raw ? " raw" : isDense(series, y) ? " dense" : ""}`;
-    const solid = series.over && series.alone.includes(true)
+    const kind = `curve${series.raw ? " raw" : !isAlone && isDense(series, y) ? " dense" : ""}`;
+    const solid = (series.over || series.inPart) && series.alone.includes(true)
       ? `<path class="${kind}" style="${solidStroke(series)}" d="${path({ ...series, y: alone(series, series.y) }, x, y)}"/>` : "";
     return `<path class="${kind}" style="${stroke(series)}" d="${path(series, x, y)}"/>${solid}`;
   }
@@ -312,7 +322,7 @@ const plots = (() => {
       body = axes(panel.svg, size, timeTicks(), yTicks, px, y)
         + `<g clip-path="url(#${clip})">`
         + (panel.guides ?? []).map((at) => `<path class="guide" d="M${margin.left} ${y(at).toFixed(1)}H${size.width}"/>`).join("")
-        + panel.series.map((series) => curve(series, px, y)).join("")
+        + panel.series.map((series) => curve(series, px, y, panel.series.length < 2)).join("")
         + `<path class="impacts" d="${impacts}"/></g>`;
     }
     panel.svg.innerHTML = `${inside}${body}<path class="hover"/><path class="cursor"/><rect class="selection"/>`;
@@ -326,7 +336,9 @@ const plots = (() => {
     let body = axes(panel.svg, size, timeTicks(), [], px, () => 0);
     panel.bands.forEach((band, row) => {
       const y = margin.top + rowHeight * row;
-      body += `<text x="${margin.left - 7}" y="${y + 10}" text-anchor="end">${band.short}</text><g clip-path="url(#${clip})">`;
+      // A name too long for the margin is smaller.
+      const fits = Math.min(1, (margin.left - 9) / labelWidth(band.short));
+      body += `<text x="${margin.left - 7}" y="${y + 10}" text-anchor="end"${fits < 1 ? ` style="font-size: ${(11.5 * fits).toFixed(1)}px"` : ""}>${band.short}</text><g clip-path="url(#${clip})">`;
       let from = 0;
       for (let i = 1; i <= band.state.length; i++) {
         if (i < band.state.length && band.state[i] === band.state[from]) continue;
@@ -352,7 +364,9 @@ const plots = (() => {
       const room = 0.06 * (high - low) + Math.max(0, leastRange(low, high, least) - (high - low)) / 2;
       return low <= high ? [low - room, high + room] : [-1, 1];
     };
-    const [x0, x1] = extent(panel.series.flatMap((series) => series.x), panel.leastX);
+    const ofX = panel.series.flatMap((series) => series.x);
+    const ends = ofX.filter(Number.isFinite).reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
+    const [x0, x1] = extent(ofX.concat(nearGuides(panel, ...ends)), panel.leastX);
     const [y0, y1] = extent(panel.series.flatMap((series) => series.y), panel.least);
     const [right, bottom] = [size.width - margin.right, size.height - portraitBottom];
     const x = (value) => margin.left + ((value - x0) / (x1 - x0)) * (right - margin.left);

@@ -619,7 +619,7 @@ const scene = (() => {
     const byPairs = new Map(all.map(({ point }) => [point.contact, []]));
     all.forEach((force) => byPairs.get(force.point.contact).push(force));
     return all.map(({ point, n, s, place }) => {
-      if (point.course) return { point, n, s, place };
+      if (forces.compliant?.includes(point.contact)) return { point, n, s, place };
       const together = byPairs.get(point.contact).filter((other) => facesAlike(other.place, place));
       const [normal, tangential] = together.reduce((sum, other) => [sum[0] + other.n, sum[1] + other.s], [0, 0]);
       return { point, n, s: (tangential * n) / normal, place };

@@ -1,7 +1,7 @@
 //! The line of thrust: where the forces pass through a chain of bodies of which each touches the next, such
 //! as an arch or a column. Chains are recognised by what touches what, not by names.
 
-use super::network::Link;
+use super::network::{Link, cosine};
 use super::outline::{Outline, Side};
 use super::recorder::{BLOCK_FRAME, PageRecorder};
 use teeter_scenario::scene::SupportingBody;
@@ -116,8 +116,8 @@ impl<'a> LastPicture<'a> {
 }
 
 /// The lines of thrust at the end of a run: of each chain of three blocks or more that stands on a support (ground, a
-/// beam, a block whose motion is prescribed) with its first block and ends at one or is free at its end, and each of whose
-/// blocks touches no others.
+/// beam, a block whose motion is prescribed) with its first block and ends at one or is free at its end, each of whose
+/// blocks touches no others, and none of which two neighbours bear together, as a lintel on its posts.
 #[must_use]
 pub fn thrust_lines(recorder: &PageRecorder) -> Vec<ThrustLine> {
     let Some(last) = LastPicture::of(recorder) else { return Vec::new() };
@@ -144,6 +144,8 @@ pub fn thrust_lines(recorder: &PageRecorder) -> Vec<ThrustLine> {
         };
         is_free(other).then_some(other)
     };
+    let on =
+        |thrust: &Thrust, block: usize| if thrust.block == block { thrust.force } else { thrust.force.map(|x| -x) };
     let mut seen = vec![false; blocks.len()];
     let mut starts: Vec<(usize, &Thrust)> = Vec::new();
     for (block, thrusts) in touching.iter().enumerate() {
@@ -160,6 +162,8 @@ pub fn thrust_lines(recorder: &PageRecorder) -> Vec<ThrustLine> {
             match (onwards.next(), onwards.next()) {
                 (None, _) => break true,
                 (Some(_), Some(_)) => break false,
+                // What lies on two supports hands no force on from one to the other: a line through both is the way of none.
+                (Some(next), None) if cosine(on(entered, block), on(next, block)) > 0.0 => break false,
                 (Some(next), None) => {
                     thrusts.push(next);
                     match beyond(next, block) {

@@ -426,7 +426,11 @@ impl Curves {
             if 2 * (work.sticking + work.slipping) > bucket.steps { *state } else { ContactState::Open }
         });
         let usual = usual.collect();
-        let slip = works().map(|work| work.slip).collect();
+        let slip: Vec<f64> = works().map(|work| work.slip).collect();
+        let before = std::iter::once(0.0).chain(slip.iter().copied());
+        let slid =
+            works().zip(before).filter(|(work, _)| work.slipping > 0).map(|(work, before)| (work.slip - before).abs());
+        let slid = slid.fold(0.0, f64::max);
         let touching = works().filter(|work| work.sticking + work.slipping > 0).count();
         let mixed = works()
             .filter(|work| work.sticking.min(work.slipping) as f64 >= MIXED * (work.sticking + work.slipping) as f64);
@@ -437,7 +441,18 @@ impl Curves {
         let (normal, tangential): (Vec<f64>, Vec<f64>) = (mean(0), mean(1));
         let course =
             self.is_thinned().then(|| [self.course(contact, 0, &normal), self.course(contact, 1, &tangential)]);
-        Some(ForceCurve { normal, tangential, course, slip, state, usual, impacts, alternates, hides_slip: false })
+        Some(ForceCurve {
+            normal,
+            tangential,
+            course,
+            slip,
+            state,
+            usual,
+            impacts,
+            alternates,
+            hides_slip: false,
+            slid,
+        })
     }
 }
 
@@ -459,6 +474,22 @@ mod tests {
             );
         }
         curves
+    }
+
+    #[test]
+    fn a_slide_in_a_stretch_that_mostly_sticks_is_known() {
+        let slides = |of: u32| {
+            let mut curves = Curves::new(2, 0.0, vec![], 1);
+            for k in 1..=16 {
+                curves.enter(f64::from(k), &[]);
+                let (state, slip) = if k == of { (ContactState::Slip, 1e-5) } else { (ContactState::Stick, 0.0) };
+                curves.add(0, [2.0, -1.0], Of::Force, state, slip);
+            }
+            let forces = curves.forces(0).unwrap();
+            assert!(!forces.state.contains(&ContactState::Slip));
+            forces.slid
+        };
+        assert_eq!([slides(5), slides(99)], [1e-5, 0.0]);
     }
 
     #[test]

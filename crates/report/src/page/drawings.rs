@@ -132,7 +132,7 @@ pub(super) fn eccentricities(lines: &[ThrustLine]) -> Option<Figure> {
         let label = if several {
             format!("{} to {}", line.blocks[0], line.blocks[line.blocks.len() - 1])
         } else {
-            String::new()
+            "line of thrust".to_owned()
         };
         let points = line.joints.iter().enumerate();
         let value = |joint: &super::Joint| {

@@ -29,7 +29,7 @@ use teeter_plot::{Axis, Band, Colour, Figure, Legend, Panel, Series};
 /// `omega.svg` and `displacement.svg` show bands, and there are no portraits. What would show nothing but rounding has no figure.
 #[must_use]
 pub fn figures(recorder: &PageRecorder) -> Vec<(String, String)> {
-    let panels = Panels::of(recorder);
+    let panels = Panels::in_full(recorder);
     let moving = opening(recorder, &panels).map(|opening| opening.shown);
     let plots = Plots { recorder, panels: &panels, t: panels.curves.times(), moving };
     let scenery = &recorder.scenery;
@@ -152,14 +152,14 @@ impl Plots<'_> {
         let lines = panel.lines.iter().map(|line| {
             let t = if line.of.is_none() { &borders } else { &self.t };
             let points = t.iter().copied().zip(line.y.iter().copied());
-            let series = Series::line(&line.label, points).number(line.number);
+            let series = Series::line(&line.label, points).number(line.number).dashed_but_at(line.itself.clone());
             if line.is_raw { series.faint() } else { series }
         });
         let lines: Vec<Series> = lines.collect();
         let label = format!("{} ({})", panel.title, panel.unit);
         let cut = panel.cut_at();
         let range = cut.map(|cut| range_of(&cut, &lines));
-        let y = cut_axis(&label, range, &lines, panel.least);
+        let y = cut_axis(&label, range, values(&lines).chain(near(&panel.guides, values(&lines))), panel.least);
         let (lines, about_pale, told) = cut_lines(lines, cut, range, &panel.unit);
         let contact = panel.of_contact.as_ref();
         let name = contact.map(|(_, name)| name).filter(|name| !name.is_empty()).map(Note::of_plot);
@@ -183,7 +183,8 @@ impl Plots<'_> {
         });
         let strong = portrait.lines.iter().map(|line| part(line, &line.label, line.strong.clone()));
         let lines: Vec<Series> = pale.chain(strong).collect();
-        let x = lines.iter().flat_map(Series::points).map(|point| point.0);
+        let x = || lines.iter().flat_map(Series::points).map(|point| point.0);
+        let x = x().chain(near(&portrait.guides, x()));
         let x = Axis::around(format!("{} ({})", portrait.x_label, portrait.x_unit), x, portrait.least[0]);
         let y = Axis::around(format!("{} ({})", portrait.y_label, portrait.y_unit), values(&lines), portrait.least[1]);
         // A block's critical angles, where one of them is reached: beyond, it overturns.
@@ -284,7 +285,7 @@ impl Plots<'_> {
         let mut pairs = Vec::new();
         for (pair, contact) in scenery.contacts.iter().enumerate() {
             let (mut normal, mut means, mut tangential, mut bands) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-            let (mut impacts, mut briefly, mut alternates) = (Vec::new(), false, false);
+            let (mut impacts, mut briefly) = (Vec::new(), false);
             // Colours are for those that touch: of all there would be too many.
             let touching = contact.points.iter().zip(curves.iter().zip(&means_of_points).skip(contact.first));
             let touching = touching.filter_map(|(drawn, (forces, mean))| Some((drawn, forces.as_ref()?, mean)));
@@ -327,7 +328,6 @@ impl Plots<'_> {
                     impacts.push(step(&forces.impacts, self.panels.impulse_unit.1, label));
                 }
                 bands.push(Band::new(label, stretches(&borders, forces)));
-                alternates |= forces.alternates;
                 briefly |= (0..forces.state.len()).any(|bucket| forces.does(bucket) == Does::Briefly);
             }
             if normal.is_empty() {
@@ -371,7 +371,8 @@ impl Plots<'_> {
                 let strong = (has_means && !contact.has_duration)
                     .then(|| Note::of_plot(format!("strong: without vibrations of periods below {period}")));
                 let many = self.panels.redundant[pair].note(what == "Tangential").map(Note::of_plot);
-                let turns = (alternates && what == "Tangential").then(|| Note::of_plot("sticks and slips by turns"));
+                let turns = self.panels.alternating(contact).filter(|_| what == "Tangential");
+                let turns = turns.map(|who| Note::of_plot(format!("{who} by turns")));
                 let notes = [name.clone(), meant, strong, turns, told, many].into_iter().flatten().collect();
                 panels.push((self.marked(Panel::new(y).with(lines).telling_apart(), Some(pair)), notes));
             }
@@ -413,6 +414,17 @@ fn guided(panel: Panel, angles: &[f64], axis: &Axis) -> Panel {
     let (low, high) = axis.ends();
     if angles.iter().any(|angle| (low..=high).contains(angle)) { panel.guides_named(GUIDES) } else { panel }
 }
+
+/// The angles right beyond the ends of these values: their lines would lie on the frame, or hardly outside of it.
+fn near(angles: &[f64], values: impl Iterator<Item = f64>) -> impl Iterator<Item = f64> {
+    let values = values.filter(|value| value.is_finite());
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+    let room = BEYOND * (high - low);
+    angles.iter().copied().filter(move |at| (low - room..low).contains(at) || (high < *at && *at <= high + room))
+}
+
+/// So much of the range of a curve is beyond it right beyond.
+const BEYOND: f64 = 0.1;
 
 /// What the dashed lines of plots of φ are, as on the page.
 const GUIDES: &str = "critical angle";
@@ -473,4 +485,18 @@ fn stretches(borders: &[f64], forces: &ForceCurve) -> Vec<(f64, f64, Colour)> {
         }
     }
     stretches
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_critical_angle_right_beyond_a_curve_is_on_its_axis() {
+        let values = [0.0, 10.0];
+        let on = |angles: &[f64]| near(angles, values.into_iter()).collect::<Vec<_>>();
+        assert_eq!(on(&[-0.5, 5.0, 10.9, 12.0, -20.0]), [-0.5, 10.9]);
+        let axis = Axis::around("\u{3c6}", values.into_iter().chain(on(&[-0.5])), 0.0);
+        assert!(axis.ends().0 < -0.7, "off the frame: {:?}", axis.ends());
+    }
 }

@@ -173,7 +173,7 @@ impl Filter {
     /// value after it, as what is held there would look like a load that jumps. In a period in which it goes up and down no more than a slow vibration
     /// does, it is the curve itself. `None` unless what it is the size of rings: as `rings` says, or, where
     /// that isn't known, if it crosses its mean twice in a period, as the size of what swings about zero does so twice as often as that.
-    pub(super) fn through_the_largest(&self, curves: &Curves, column: usize, rings: Option<bool>) -> Option<Vec<f64>> {
+    pub(super) fn through_the_largest(&self, curves: &Curves, column: usize, rings: Option<bool>) -> Option<Largest> {
         if !is_long(&curves.borders()) || !rings.unwrap_or_else(|| self.crossing(curves, column, 2.0).is_some()) {
             return None;
         }
@@ -181,8 +181,7 @@ impl Filter {
         let values = curves.curve(column);
         let most = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let highest: Vec<f64> = values[1..].chunks_exact(2).map(|pair| pair[0].max(pair[1])).collect();
-        let mut largest = vec![0.0; borders.len()];
-        let mut rings_anywhere = false;
+        let (mut largest, mut itself) = (vec![0.0; borders.len()], vec![false; borders.len()]);
         for [begin, end] in self.stretches([0, borders.len() - 1]) {
             let begins = begin + usize::from(begin > 0);
             // What rang before a jolt rings on.
@@ -196,10 +195,10 @@ impl Filter {
                 let after = if is_rest { end } else { after.clamp(first + 1, end) };
                 if turns(&values[2 * first..=2 * after], STRAY * most) <= SLOW_TURNS {
                     nodes.extend((first..after).map(|k| (borders[k + 1], values[2 * k + 2])));
+                    itself[first..=after].fill(true);
                     first = after;
                     continue;
                 }
-                rings_anywhere = true;
                 let (at, most) = (first..after)
                     .map(|k| (k, highest[k]))
                     .fold((first, f64::NEG_INFINITY), |a, b| if b.1 > a.1 { b } else { a });
@@ -212,8 +211,16 @@ impl Filter {
                 largest[place] = interpolated(&nodes, borders[place]);
             }
         }
-        rings_anywhere.then_some(largest)
+        itself.contains(&false).then_some(Largest { values: largest, itself })
     }
+}
+
+/// What stays of a quantity without a sign, at the borders of the buckets.
+#[derive(Debug, PartialEq)]
+pub(super) struct Largest {
+    pub(super) values: Vec<f64>,
+    /// Where it is the quantity itself; elsewhere it goes through the largest values of every period.
+    pub(super) itself: Vec<bool>,
 }
 
 /// How often a slow vibration turns in a period at most, as a size at its largest and at 0.
@@ -248,16 +255,35 @@ fn interpolated(nodes: &[(f64, f64)], x: f64) -> f64 {
 }
 
 /// The stretches of time in which a contact presses, s, as indices of the borders at their ends: gaps shorter than the period belong to
-/// them.
+/// them, but for those between two stretches in which it presses for long, as that of a block that stands on its feet by turns.
 fn touches(borders: &[f64], normal: &[f64], period: f64) -> Vec<[usize; 2]> {
-    let mut touches: Vec<[usize; 2]> = Vec::new();
-    for (bucket, _) in normal.iter().enumerate().filter(|(_, force)| **force > 0.0) {
-        match touches.last_mut() {
-            Some([_, end]) if borders[bucket] - borders[*end] < period => *end = bucket + 1,
-            _ => touches.push([bucket, bucket + 1]),
+    let long = LONG * period;
+    let pressing = normal.iter().enumerate().filter(|(_, force)| **force > 0.0);
+    let pressing = joined(pressing.map(|(bucket, _)| [bucket, bucket + 1]), |[_, end], [begin, _]| {
+        borders[begin] - borders[end] < long
+    });
+    let lasts = |[begin, end]: [usize; 2]| borders[end] - borders[begin] >= long;
+    joined(pressing, |before, after| {
+        borders[after[0]] - borders[before[1]] < period && !(lasts(before) && lasts(after))
+    })
+}
+
+/// A contact is open, or presses, for long in this part of a period: so much of it that a mean across both would be a force that there never is.
+const LONG: f64 = 0.125;
+
+/// Stretches in their order, of which each belongs to the one before it if these say so.
+fn joined(
+    stretches: impl IntoIterator<Item = [usize; 2]>,
+    belongs: impl Fn([usize; 2], [usize; 2]) -> bool,
+) -> Vec<[usize; 2]> {
+    let mut all: Vec<[usize; 2]> = Vec::new();
+    for stretch in stretches {
+        match all.last_mut() {
+            Some(last) if belongs(*last, stretch) => last[1] = stretch[1],
+            _ => all.push(stretch),
         }
     }
-    touches
+    all
 }
 
 /// What rings within a bucket has a range larger by this than the change of the means from bucket to bucket.
@@ -316,6 +342,29 @@ mod tests {
     }
 
     #[test]
+    fn a_foot_in_the_air_bears_nothing_however_long_the_run() {
+        // In buckets of 0.2 ms, with a longest period of 20 ms.
+        let means = |force: &dyn Fn(f64) -> f64| {
+            let mut curves = Curves::new(5000, 0.0, vec![], 1);
+            for t in (1..=10_000).map(|k| 1e-4 * f64::from(k)) {
+                curves.enter(t, &[]);
+                curves.add(0, [1e-4 * force(t), 0.0], Of::Force, ContactState::Stick, 0.0);
+            }
+            let means = plain(&curves).normal(&curves, &curves.forces(0).unwrap()).unwrap();
+            curves.borders().into_iter().zip(means).collect::<Vec<_>>()
+        };
+        // Feet bear by turns, for 12 ms each, and ring.
+        let lifted = |t: f64| (t / 0.012) as u64 % 2 == 1;
+        for (t, mean) in means(&|t| if lifted(t) { 0.0 } else { 3.1 + 2.0 * (2e3 * t).sin() }) {
+            let is_inside = lifted(t - 5e-4) && lifted(t) && lifted(t + 5e-4);
+            assert!(!is_inside || mean == 0.0, "{mean} at {t}");
+        }
+        // What only chatters has one mean across.
+        let chatters = means(&|t| if ((t / 1e-3) as u64).is_multiple_of(2) { 6.0 } else { 0.0 });
+        assert!(chatters.iter().all(|(_, mean)| (mean - 3.0).abs() < 0.5), "{chatters:?}");
+    }
+
+    #[test]
     fn strikes_are_not_smeared() {
         // It rests in the end, after 20 strikes.
         let (curves, forces) = run(|t| match (t * 1e3).round() as u64 {
@@ -331,7 +380,7 @@ mod tests {
         let stress = |t: f64| (1.0 - 0.5 * t) * (2.0 * std::f64::consts::PI * 400.0 * t).sin().abs();
         let mut curves = Curves::new(400, 0.0, vec![0.0], 0);
         (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[stress(t)]));
-        let largest = plain(&curves).through_the_largest(&curves, 0, None).unwrap();
+        let largest = plain(&curves).through_the_largest(&curves, 0, None).unwrap().values;
         assert_eq!(largest.len(), curves.borders().len());
         for (largest, t) in largest.iter().zip(curves.borders()) {
             assert!((largest - (1.0 - 0.5 * t)).abs() < 0.02, "{largest} at {t}");
@@ -363,8 +412,10 @@ mod tests {
         };
         let mut curves = Curves::new(10_000, 0.0, vec![stress(0.0)], 0);
         (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[stress(t)]));
-        let largest = plain(&curves).through_the_largest(&curves, 0, Some(true)).unwrap();
-        for (largest, t) in largest.iter().zip(curves.borders()) {
+        let Largest { values, itself } = plain(&curves).through_the_largest(&curves, 0, Some(true)).unwrap();
+        for ((largest, itself), t) in values.iter().zip(itself).zip(curves.borders()) {
+            // The period in which it stops ringing may be of either kind.
+            assert!(itself == (t >= 0.6) || (t - 0.6).abs() < 0.021, "told apart, at {t}");
             let slow = 4.0 + 4.0 * (tau * 3.0 * t).sin();
             match t {
                 // Two of its values are 20 ms apart, in which what is slow changes by 1.5.
@@ -462,7 +513,7 @@ mod tests {
         let curves = struck(&impacts, ringing);
         let filter = Filter::of(&curves, &jolts(&impacts), &[curves.means(0)]);
         let means = filter.ringing(&curves, 0).unwrap();
-        let largest = filter.through_the_largest(&curves, 0, None).unwrap();
+        let largest = filter.through_the_largest(&curves, 0, None).unwrap().values;
         for ((t, mean), largest) in curves.borders().into_iter().zip(means).zip(largest) {
             if t < impacts[0] {
                 assert_eq!([mean, largest], [0.0; 2], "at {t}");
@@ -485,7 +536,7 @@ mod tests {
         let rings = |t: f64| if t > 0.6 { 30.0 } else { 3.0 } * (tau * 900.0 * t).sin().abs();
         let curves = struck(&[0.2], |t| slow(t) + rings(t));
         let filter = Filter::of(&curves, &jolts(&[0.2]), &[]);
-        let largest = filter.through_the_largest(&curves, 0, Some(true)).unwrap();
+        let largest = filter.through_the_largest(&curves, 0, Some(true)).unwrap().values;
         for t in [0.2005, 0.205, 0.21] {
             let place = curves.borders().partition_point(|border| *border < t);
             let exact = slow(curves.borders()[place]);

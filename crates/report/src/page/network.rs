@@ -57,8 +57,13 @@ pub(crate) fn passes_on(blocks: usize, links: &[(usize, Option<usize>, [f64; 2])
             forces[*other].push(force.map(|x| -x));
         }
     }
-    let is_opposed = |[a, b]: [[f64; 2]; 2]| a[0] * b[0] + a[1] * b[1] < -OPPOSED * a[0].hypot(a[1]) * b[0].hypot(b[1]);
+    let is_opposed = |[a, b]: [[f64; 2]; 2]| cosine(a, b) < -OPPOSED;
     forces.iter().map(|forces| <[[f64; 2]; 2]>::try_from(&forces[..]).is_ok_and(is_opposed)).collect()
+}
+
+/// That of the angle between two forces: -1 of those that press against each other, 1 of two that bear a block together, as the posts of a lintel.
+pub(super) fn cosine(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] * b[0] + a[1] * b[1]) / (a[0].hypot(a[1]) * b[0].hypot(b[1]))
 }
 
 /// The cosine of the largest angle by which opposed forces may be off.

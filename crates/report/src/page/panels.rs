@@ -72,6 +72,8 @@ pub(crate) struct Line {
     pub(crate) y: Vec<f64>,
     /// Whether it stays pale behind a mean, which has its name.
     pub(crate) is_raw: bool,
+    /// Of one through the largest values where the quantity rings: where it is the quantity itself. Empty if it is all along, or nowhere.
+    pub(crate) itself: Vec<bool>,
     /// Where in the curves it is from; none where its times are the borders of buckets, not those of the curves.
     pub(crate) of: Option<Source>,
 }
@@ -108,7 +110,7 @@ impl Line {
 
     fn from_zero(curves: &Curves, source: Source, label: String, number: usize) -> Self {
         let y = curves.curve(source.column).into_iter().map(|x| source.drawn(x)).collect();
-        Self { label, number, y, is_raw: false, of: Some(source) }
+        Self { label, number, y, is_raw: false, itself: Vec::new(), of: Some(source) }
     }
 }
 
@@ -175,7 +177,22 @@ pub(crate) struct Panels {
 }
 
 impl Panels {
+    /// Those of the page, which has few enough numbers to stay small.
     pub(crate) fn of(recorder: &PageRecorder) -> Self {
+        let all = Self::in_full(recorder);
+        let (buckets, numbers) = (all.curves.len(), all.numbers(recorder));
+        if numbers <= NUMBERS {
+            return all;
+        }
+        Self::with(recorder, all.curves.in_at_most(buckets * NUMBERS / numbers))
+    }
+
+    /// Those of figures, which are as fine as the curves that were kept.
+    pub(crate) fn in_full(recorder: &PageRecorder) -> Self {
+        Self::with(recorder, recorder.kept.curves.ended())
+    }
+
+    fn with(recorder: &PageRecorder, curves: Curves) -> Self {
         let forces = |curves: &Curves| {
             let of = |point: usize| {
                 let from_first_step = |column: usize| {
@@ -190,34 +207,26 @@ impl Panels {
             };
             (0..recorder.scenery.points).map(of).collect::<Vec<_>>()
         };
-        let drawn = |curves: Curves| {
-            let forces = forces(&curves);
-            let mut panels = Self {
-                normal: vec![true; recorder.scenery.contacts.len()],
-                tangential: vec![true; recorder.scenery.contacts.len()],
-                units: Units::of(recorder.scenery.display.length, &[]),
-                force_units: Vec::new(),
-                impulse_unit: prefix(largest(forces.iter().flatten().flat_map(|forces| &forces.impacts))),
-                redundant: redundant(recorder, &curves, &forces),
-                sums: Vec::new(),
-                curves,
-                forces,
-                panels: Vec::new(),
-                portraits: Vec::new(),
-                left_out: Vec::new(),
-                untraced: Vec::new(),
-            };
-            let sums = (0..recorder.scenery.contacts.len()).map(|pair| panels.sum(recorder, pair));
-            panels.sums = sums.collect();
-            panels.fill(recorder);
-            panels
+        let forces = forces(&curves);
+        let mut panels = Self {
+            normal: vec![true; recorder.scenery.contacts.len()],
+            tangential: vec![true; recorder.scenery.contacts.len()],
+            units: Units::of(recorder.scenery.display.length, &[]),
+            force_units: Vec::new(),
+            impulse_unit: prefix(largest(forces.iter().flatten().flat_map(|forces| &forces.impacts))),
+            redundant: redundant(recorder, &curves, &forces),
+            sums: Vec::new(),
+            curves,
+            forces,
+            panels: Vec::new(),
+            portraits: Vec::new(),
+            left_out: Vec::new(),
+            untraced: Vec::new(),
         };
-        let all = drawn(recorder.kept.curves.ended());
-        let (buckets, numbers) = (all.curves.len(), all.numbers(recorder));
-        if numbers <= NUMBERS {
-            return all;
-        }
-        drawn(all.curves.in_at_most(buckets * NUMBERS / numbers))
+        let sums = (0..recorder.scenery.contacts.len()).map(|pair| panels.sum(recorder, pair));
+        panels.sums = sums.collect();
+        panels.fill(recorder);
+        panels
     }
 
     fn fill(&mut self, recorder: &PageRecorder) {
@@ -294,6 +303,13 @@ impl Panels {
     pub(crate) fn told_of_impacts(&self) -> String {
         let stretch = with_digits(self.curves.longest_bucket(), "s", 2);
         format!("the largest of every {stretch}, also at points that stay closed")
+    }
+
+    /// Which points of a contact stick and slip by turns, as the subject of a sentence; nothing if none does.
+    pub(crate) fn alternating(&self, contact: &ContactDrawn) -> Option<String> {
+        let points = contact.points.iter().zip(&self.forces[contact.first..]);
+        let touching = points.filter_map(|(point, forces)| Some((point.label.as_str(), forces.as_ref()?.alternates)));
+        who_alternates(&touching.collect::<Vec<_>>())
     }
 
     /// The tangential force of all points of a contact together, if it is what is drawn.
@@ -379,6 +395,23 @@ impl Panels {
     }
 }
 
+/// Which points stick and slip by turns, of all with whether they do.
+fn who_alternates(points: &[(&str, bool)]) -> Option<String> {
+    let named: Vec<&str> = points.iter().filter(|(_, alternates)| *alternates).map(|(name, _)| *name).collect();
+    match (named.len(), points.len()) {
+        (0, _) => None,
+        (1, 1) => Some("the point sticks and slips".to_owned()),
+        (1, _) => Some(format!("{} sticks and slips", named[0])),
+        (2, 2) => Some("both points stick and slip".to_owned()),
+        (some, all) if some == all => Some(format!("all {all} points stick and slip")),
+        (some, all) if some > MOST_NAMED => Some(format!("{some} of {all} points stick and slip")),
+        _ => Some(format!("{} stick and slip", named.join(", "))),
+    }
+}
+
+/// Most points of a contact that are told by their names.
+const MOST_NAMED: usize = 3;
+
 /// The tangential force of all points of a contact together, N.
 #[derive(Debug)]
 pub(crate) struct Sum {
@@ -395,4 +428,20 @@ fn sum<'a>(curves: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
         total
     };
     curves.fold(Vec::new(), add)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::who_alternates;
+
+    #[test]
+    fn who_sticks_and_slips_by_turns_is_named() {
+        let of = |points: &[(&str, bool)]| who_alternates(points);
+        assert_eq!(of(&[("left", false), ("right", false)]), None);
+        assert_eq!(of(&[("left", true), ("right", false)]).unwrap(), "left sticks and slips");
+        assert_eq!(of(&[("left", true), ("right", true)]).unwrap(), "both points stick and slip");
+        assert_eq!(of(&[("left", true), ("right", true), ("hump 1", false)]).unwrap(), "left, right stick and slip");
+        let humps: Vec<(&str, bool)> = (0..9).map(|k| ("hump", k > 3)).collect();
+        assert_eq!(of(&humps).unwrap(), "5 of 9 points stick and slip");
+    }
 }

@@ -28,6 +28,9 @@ const LEAST: f64 = 0.1;
 /// So many looks in a row are a rest.
 const REST: usize = 2;
 
+/// So are looks apart from each other in more than this part of the run.
+const OFTEN: f64 = 0.2;
+
 /// What equilibrium leaves open of the forces of a contact.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Redundant {
@@ -92,12 +95,21 @@ pub(super) fn redundant(recorder: &PageRecorder, curves: &Curves, forces: &[Opti
     let at_end = |contact: usize| looks.last().is_some_and(|look| look[contact]);
     // A short rest, as before a column is shaken, is enough for a square wave between its feet.
     let often = |count: usize| count as f64 >= LEAST * looks.len() as f64 && count > 0;
-    let of = |contact: usize| Redundant {
-        forces: often(looks.iter().filter(|look| look[contact]).count()),
-        at_end: at_end(contact),
-        shares: longest(buckets.iter().map(|bucket| shares(&contacts[contact], *bucket))) >= REST,
+    let of = |contact: usize| {
+        let shared: Vec<bool> = buckets.iter().map(|bucket| shares(&contacts[contact], *bucket)).collect();
+        Redundant {
+            forces: often(looks.iter().filter(|look| look[contact]).count()),
+            at_end: at_end(contact),
+            shares: is_rest(&shared),
+        }
     };
     (0..contacts.len()).map(of).collect()
+}
+
+/// Whether looks, of which some are so, are no touch in passing: several in a row, or many in all.
+fn is_rest(looks: &[bool]) -> bool {
+    let count = looks.iter().filter(|is_so| **is_so).count();
+    longest(looks.iter().copied()) >= REST || count as f64 >= OFTEN * looks.len().max(1) as f64
 }
 
 /// How many looks in a row are so at most.
@@ -169,10 +181,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn looks_apart_are_no_rest() {
-        let longest = |looks: [u8; 6]| longest(looks.into_iter().map(|look| look == 1));
-        assert!(longest([1, 0, 1, 0, 0, 1]) < REST);
-        assert!(longest([0, 1, 1, 0, 0, 1]) >= REST);
-        assert_eq!(longest([0; 6]), 0);
+    fn a_few_looks_apart_are_no_rest() {
+        let is_rest = |looks: [u8; 12]| is_rest(&looks.map(|look| look == 1));
+        assert!(!is_rest([1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0]));
+        assert!(is_rest([0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0]));
+        assert!(is_rest([1, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1]), "every third");
+        assert!(!is_rest([0; 12]));
     }
 }

@@ -161,6 +161,40 @@ fn half_arch_by_statics(line: &ThrustLine, count: usize, weight: f64) {
 }
 
 #[test]
+fn a_figure_of_many_blocks_is_as_smooth_as_the_motion() {
+    let shaken = arch(28, "0.6 s").replace(
+        "[ground]\n",
+        "[ground]\nmotion = { acceleration = ['0.5 m/s^2', '0 m/s^2'], signal = 'shake' }\n\
+         [signal.shake]\nshape = 'one-sine'\nstart = '0.1 s'\nperiod = '0.2 s'\n",
+    );
+    let run = run("shaken-arch", &shaken);
+    let (_, svg) = figures(&run.page).into_iter().find(|(file, _)| file == "ground_a.svg").unwrap();
+    let longest = svg.split("<path d=\"").map(|path| path.split('"').next().unwrap().matches('L').count()).max();
+    // The page, which has to stay small, has some dozens of points.
+    assert!(longest.unwrap() > 200, "{longest:?}");
+}
+
+#[test]
+fn there_is_no_line_of_thrust_through_a_lintel_on_its_posts() {
+    let block = |name: &str, width: &str, height: &str, place: &str| {
+        format!(
+            "[block.{name}]\nmaterial = 'stone'\nwidth = '{width}'\nheight = '{height}'\ndepth = '40 cm'\n{place}\n"
+        )
+    };
+    let text = format!(
+        "[time]\nend = '20 ms'\nstep = '1 ms'\n[ground]\n[material.stone]\ndensity = '2500 kg/m^3'\n{}{}{}\
+         [contact.joints]\nbetween = ['lintel', '*t']\nfriction = 0.6\n[contact.ground]\nbetween = ['*t', 'ground']\nfriction = 0.6\n",
+        block("left", "40 cm", "1.8 m", "on = 'ground'\nat = '-1 m'"),
+        block("right", "40 cm", "1.8 m", "on = 'ground'\nat = '1 m'"),
+        block("lintel", "2.6 m", "40 cm", "position = ['0 m', '2 m']"),
+    );
+    let portal = run("portal", &text);
+    assert!(thrust_lines(&portal.page).is_empty());
+    let files: Vec<String> = figures(&portal.page).into_iter().map(|(file, _)| file).collect();
+    assert!(files.iter().any(|file| file == "force_chains.svg") && files.iter().all(|file| file != "thrust_line.svg"));
+}
+
+#[test]
 fn chains_are_found_by_what_touches_not_by_names() {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let text = |name: &str| fs::read_to_string(scenarios.join(format!("{name}.toml"))).unwrap();
@@ -172,6 +206,7 @@ fn chains_are_found_by_what_touches_not_by_names() {
     }
     for (file, svg) in figures(&arch.page) {
         assert_well_formed(&file, &svg);
+        assert!(file != "eccentricity.svg" || svg.contains(">line of thrust<"), "the curve has a name, too");
     }
     // In a wall each stone touches several: no chain.
     let wall = run("wall", &text("dry-stone-wall").replace("end  = \"2 s\"", "end  = \"50 ms\""));

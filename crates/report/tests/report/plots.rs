@@ -68,6 +68,9 @@ fn forces_that_equilibrium_leaves_open_are_told_as_one_of_many_sets() {
     // A stack has as many equations as unknowns: three of each a block.
     let stack = run("stack-of-one", &scenario_text("stack-of-blocks"));
     assert!(data(&stack.html)["forces"]["redundant"].is_null());
+    // On level ground the sums over its feet are what the first steps leave of shares that face each other.
+    let forces = &data(&stack.html)["forces"];
+    assert!(forces["shares"].as_array().unwrap().len() == 20 && forces["frictionless"] == forces["shares"]);
     assert!(!figures(&stack.page).iter().any(|(_, svg)| svg.contains("many equilibria")));
 }
 

@@ -234,7 +234,7 @@ fn reactions_that_ring_are_pale_behind_their_means() {
     assert!((start(&means) / start(&raw) - 1.0).abs() < 0.05, "{} {}", start(&means), start(&raw));
     // A size has no mean that carries, but a largest value in each period.
     let stress = panel(&page, "section-stress").unwrap();
-    assert_eq!(stress["note"], note("where it rings, through the largest of every"));
+    assert_eq!(stress["note"], note("the stress itself, where it rings dashed, through the largest of every"));
     let (pale, strong): (Vec<_>, Vec<_>) =
         stress["series"].as_array().unwrap().iter().partition(|line| line["raw"] == true);
     assert!(pale.len() == strong.len() && (range(&strong) / range(&pale) - 1.0).abs() < 1e-3, "{}", range(&strong));

@@ -24,6 +24,8 @@ pub(crate) struct ForceCurve {
     pub(crate) alternates: bool,
     /// Whether it is told to stick somewhere where it slips by no more than rounding.
     pub(crate) hides_slip: bool,
+    /// The farthest that it slips in a stretch in which it does so by its state in some of the steps, however few, m.
+    pub(crate) slid: f64,
 }
 
 /// What slips by no more than rounding at the beginning or the end of a slide is drawn as sticking if it takes more than this part of the run: so long
@@ -131,6 +133,7 @@ mod tests {
                 impacts: impacts.to_vec(),
                 alternates: false,
                 hides_slip: false,
+                slid: 0.0,
             };
             forces.drop_impacts_of_force(0.1);
             forces.impacts
@@ -160,6 +163,7 @@ mod tests {
                 impacts: Vec::new(),
                 alternates: false,
                 hides_slip: false,
+                slid: 0.0,
             };
             forces.stick_within(1e-9);
             (forces.state, forces.hides_slip)
@@ -180,6 +184,7 @@ mod tests {
             impacts: Vec::new(),
             alternates: false,
             hides_slip: false,
+            slid: 0.0,
         };
         trembles.stick_within(1e-9);
         assert_eq!(trembles.state, [vec![Stick; 9], vec![Slip; 3]].concat());

@@ -52,6 +52,9 @@ struct SeriesData {
     /// Whether it stays pale behind a mean, which has its name.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     raw: bool,
+    /// Of a line that is dashed where it is another quantity than itself: the points at which that changes, the first where it is itself.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    turns: Vec<usize>,
     /// Whether its times are the borders of the forces, not those of the curves.
     at_borders: bool,
     y: Column,
@@ -94,12 +97,18 @@ impl SeriesData {
             label: line.label.clone(),
             index: line.number,
             raw: line.is_raw,
+            turns: turns(&line.itself),
             at_borders: line.of.is_none(),
             y,
             other_at,
             others,
         }
     }
+}
+
+/// The points at which this changes, from not so at the beginning.
+fn turns(is_so: &[bool]) -> Vec<usize> {
+    (0..is_so.len()).filter(|k| is_so[*k] != (*k > 0 && is_so[k - 1])).collect()
 }
 
 /// The values of a column in all pictures: of coordinates of blocks, which each picture has.
@@ -200,9 +209,9 @@ pub(super) struct ForceData {
     /// These sums, with their contacts, where they are at the times of the curves.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     sums: Vec<(usize, Column)>,
-    /// Contacts that stick and slip by turns, of which the band shows what they do in most of a stretch.
+    /// Contacts of which some points stick and slip by turns, with the names of these: the band shows what they do in most of a stretch.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    alternating: Vec<usize>,
+    alternating: Vec<(usize, String)>,
     /// Contacts that slip by so little in a stretch that it is drawn as sticking, with the most of it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     unseen_slip: Vec<(usize, String)>,
@@ -269,14 +278,12 @@ pub(super) fn portraits(panels: &Panels) -> Vec<PortraitData> {
                 let [x, y] = [&line.x, &line.v].map(|values| Column::of(values, SEEN));
                 let t = Column::of(&line.t, SEEN_BELOW_PEAKS);
                 let strong = Some([line.strong.start, line.strong.end]).filter(|_| line.strong.len() < line.t.len());
-                let alone = |k: usize| line.alone[k];
-                let turns = (0..line.alone.len()).filter(|k| alone(*k) != (*k > 0 && alone(k - 1))).collect();
                 PortraitSeries {
                     label: line.label.clone(),
                     index: line.number,
                     strong,
                     over: line.over,
-                    turns,
+                    turns: turns(&line.alone),
                     t,
                     x,
                     y,
@@ -315,8 +322,14 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
                 let column = recorder.spring_column(drawn.first + point);
                 let of = |part: usize| {
                     let source = column.map(|column| Source { column: column + part, zero: 0.0, factor: 1.0 });
-                    let line =
-                        Line { label: String::new(), number: 0, y: course[part].clone(), is_raw: false, of: source };
+                    let line = Line {
+                        label: String::new(),
+                        number: 0,
+                        y: course[part].clone(),
+                        is_raw: false,
+                        itself: Vec::new(),
+                        of: source,
+                    };
                     SeriesData::of(&line, recorder, panels, 0.0, if column.is_some() { SEEN } else { SEEN_BELOW_PEAKS })
                 };
                 [of(0), of(1)]
@@ -329,7 +342,7 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
     let forces_of =
         |drawn: &ContactDrawn| panels.forces[drawn.first..drawn.first + drawn.points.len()].iter().flatten();
     let hiding = contacts().filter(|(_, drawn)| forces_of(drawn).any(|forces| forces.hides_slip));
-    let alternating = contacts().filter(|(_, drawn)| forces_of(drawn).any(|forces| forces.alternates));
+    let alternating = contacts().filter_map(|(pair, drawn)| Some((pair, panels.alternating(drawn)?)));
     let sums = panels
         .sums
         .iter()
@@ -351,7 +364,7 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         redundant: (0..panels.redundant.len()).filter(|pair| panels.redundant[*pair].forces).collect(),
         shares: (0..panels.redundant.len()).filter(|pair| panels.sums_tangential(*pair)).collect(),
         sums: sums.map(|(pair, sum)| (pair, Column::of(&sum.y, SEEN_BELOW_PEAKS))).collect(),
-        alternating: alternating.map(|(pair, _)| pair).collect(),
+        alternating: alternating.collect(),
         unseen_slip: hiding.map(|(pair, drawn)| (pair, with_digits(unseen_slip(recorder, drawn), "m", 1))).collect(),
         compliant: contacts().filter(|(_, drawn)| drawn.has_duration).map(|(pair, _)| pair).collect(),
         points: points.collect(),

@@ -54,11 +54,11 @@ fn without_filled(mut lines: Vec<Series>, range: Option<(f64, f64)>) -> Vec<Seri
 /// So many points of a curve are a vertical stroke of its figure.
 const STRETCH: usize = 16;
 
-/// The y axis of lines that may have been cut to a range.
-pub(super) fn cut_axis(label: &str, range: Option<(f64, f64)>, lines: &[Series], least: f64) -> Axis {
+/// The y axis of these values, which may have been cut to a range.
+pub(super) fn cut_axis(label: &str, range: Option<(f64, f64)>, values: impl Iterator<Item = f64>, least: f64) -> Axis {
     match range {
         Some((low, high)) => Axis::between(label, low, high),
-        None => Axis::around(label, values(lines), least),
+        None => Axis::around(label, values, least),
     }
 }
 

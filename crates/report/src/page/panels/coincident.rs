@@ -13,7 +13,8 @@ pub(super) fn tell_apart(lines: &mut [PortraitLine]) -> usize {
         high - low
     };
     let within = [range(|line| &line.x), range(|line| &line.v)].map(|range| NEAR * range);
-    let found = teeter_plot::coincident(lines.len(), |k, earlier| lies_on(&lines[k], &lines[earlier], within));
+    let most = teeter_plot::most_over(lines.iter().map(|line| line.number));
+    let found = teeter_plot::coincident(lines.len(), most, |k, earlier| lies_on(&lines[k], &lines[earlier], within));
     for k in (0..lines.len()).filter(|k| found.over[*k] > 0) {
         let (earlier, later) = lines.split_at_mut(k);
         let line = &mut later[0];
@@ -85,5 +86,8 @@ mod tests {
         let mut drums: Vec<PortraitLine> = (0..5).map(|_| line(1.0, 0.05)).collect();
         assert_eq!(tell_apart(&mut drums), 5);
         assert!(drums.iter().all(|line| line.over == 0));
+        // The eighth block is told from the first one by its dashes.
+        let mut of_eight = [line(1.0, 0.05), PortraitLine { number: 7, ..line(1.0, 0.05) }];
+        assert_eq!((tell_apart(&mut of_eight), of_eight[1].over), (2, 0));
     }
 }

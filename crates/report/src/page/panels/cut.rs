@@ -48,7 +48,8 @@ const RINGS: f64 = 3.0;
 /// Where the axis of these curves ends because peaks dwarf the rest, or what rings its mean: the one rule for page and
 /// figures. Each curve is told with whether it stays pale behind a mean; values of no more than `least` count as none.
 ///
-/// However many curves are small, none of the others is cut below what it bears on average over the run.
+/// However many curves are small, none of the others is cut below what it bears on average over the run, and no strong one before its largest value
+/// where others are pale.
 pub(crate) fn cut_at<'a>(curves: impl Iterator<Item = (bool, &'a [f64])> + Clone, least: f64) -> Option<Cut> {
     let all = largest(curves.clone().flat_map(|(_, y)| y));
     let strong = || curves.clone().filter(|(is_raw, _)| !is_raw).map(|(_, y)| y);
@@ -63,6 +64,8 @@ pub(crate) fn cut_at<'a>(curves: impl Iterator<Item = (bool, &'a [f64])> + Clone
         if all > PEAK * usual { 0.5 * PEAK * usual } else { all }
     };
     let limit = strong().map(borne).fold(limit, f64::max);
+    // What is said to be cut is what is pale: a curve that seems to be whole would be read as such.
+    let limit = if curves.clone().any(|(is_raw, _)| is_raw) { limit.max(means) } else { limit };
     let values = || curves.clone().flat_map(|(_, y)| y).copied().filter(|y| y.is_finite());
     (limit < all).then(|| Cut { limit, low: values().fold(0.0, f64::min), high: values().fold(0.0, f64::max) })
 }
@@ -86,6 +89,15 @@ mod tests {
         let uneven = [&[-20.0, 88.5][..], &[1.0; 98]].concat();
         let cut = cut_at(std::iter::once((false, &uneven[..])), 1e-6).unwrap();
         assert_eq!((cut.low, cut.high), (-20.0, 88.5));
+    }
+
+    #[test]
+    fn no_strong_curve_is_cut_where_others_are_pale() {
+        // A stress that rings up to 9, with a line through its largest values, of which one of twenty is 6.
+        let rings: Vec<f64> = (0..100).map(|k| if k == 50 { 9.0 } else { 1.0 }).collect();
+        let strong: Vec<f64> = (0..100).map(|k| if (48..53).contains(&k) { 6.0 } else { 1.0 }).collect();
+        let cut = cut_at([(true, &rings[..]), (false, &strong[..])].into_iter(), 1e-6).unwrap();
+        assert_eq!((cut.limit, cut.high), (6.0, 9.0));
     }
 
     #[test]

@@ -13,6 +13,10 @@ const SLIP_SCALE: f64 = 100.0;
 /// This many times as much where a point never slips by its state.
 const STUCK_SCALE: f64 = 100.0;
 
+/// Scale of the sum of shares that face each other, in largest forces: how exact they are is a part of all that the contacts bear, and each
+/// of them adds its own.
+const SUM_SCALE: f64 = 10.0;
+
 /// Slip of no more than this (m) in a stretch is drawn as sticking.
 pub(crate) fn unseen_slip(recorder: &PageRecorder, contact: &ContactDrawn) -> f64 {
     ROUNDING * SLIP_SCALE * recorder.scenery.blocks[contact.block].reach
@@ -69,20 +73,21 @@ impl Panels {
                 self.forces[contact.first..contact.first + contact.points.len()].fill(None);
                 continue;
             }
-            let force = match &self.sums[pair] {
-                Some(sum) => largest(&sum.y),
-                None => largest(points.iter().flat_map(|(_, _, forces)| &forces.tangential)),
+            let (force, scale) = match &self.sums[pair] {
+                Some(sum) => (largest(&sum.y), SUM_SCALE * strongest),
+                None => (largest(points.iter().flat_map(|(_, _, forces)| &forces.tangential)), strongest),
             };
-            self.tangential[pair] = holds(force, strongest);
+            self.tangential[pair] = holds(force, scale);
             if !self.tangential[pair] {
-                left_out.push(("tangential force of", of(), [force, strongest], "N"));
+                left_out.push(("tangential force of", of(), [force, scale], "N"));
             }
             let reach = scenery.blocks[contact.block].reach;
             let scale = SLIP_SCALE * reach;
-            // Where no point slips by its state, the rounding of what sticks has added up.
+            // Where no point slips by its state, or by no more than rounding, the rounding of what sticks has added up.
+            let rounding = unseen_slip(recorder, contact);
             let scale_of = |forces: &ForceCurve| {
-                let sticks = !forces.state.contains(&ContactState::Slip);
-                if sticks { STUCK_SCALE * scale } else { scale }
+                let slips = forces.state.contains(&ContactState::Slip) || forces.slid > rounding;
+                if slips { scale } else { STUCK_SCALE * scale }
             };
             let slips = |forces: &ForceCurve| holds(largest(&forces.slip), scale_of(forces));
             let slipping: Vec<_> = points.iter().filter(|(_, _, forces)| slips(forces)).collect();
@@ -97,6 +102,7 @@ impl Panels {
                 number: *number,
                 y: std::iter::once(0.0).chain(forces.slip.iter().copied()).collect(),
                 is_raw: false,
+                itself: Vec::new(),
                 of: None,
             });
             panels.push(TimePanel {

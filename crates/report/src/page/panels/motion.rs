@@ -369,7 +369,7 @@ impl Panels {
                 if alone { recorder.points_of_no_return[*k] } else { tops }
             };
             let tops = orbits.iter().filter(|_| c == PHI).filter_map(near);
-            let guides = guides(tops.flatten(), factors[0]);
+            let guides = guides(tops, factors[0]);
             let on = from_ground(recorder, &self.curves, c);
             let strong = what_is_strong(orbits.iter().map(|(_, points)| (strong(points), points.len())));
             let mut lines: Vec<PortraitLine> = orbits.into_iter().map(line).collect();
@@ -460,20 +460,38 @@ fn unseen(bodies: impl Iterator<Item = (String, f64)>, size: impl Fn(f64) -> Str
 const MANY_TURNS: usize = 120;
 const STRONG: usize = 20;
 
-/// Which points of an orbit are drawn strong: of many turns those about its point farthest from where it ends, which are the first of a motion that
-/// decays. The first of one that is shaken are hidden behind its strong ones.
+/// Which points of an orbit are drawn strong: of many turns those that cover most of its extent. Of a motion that decays these are the first; of one that
+/// is shaken those about its largest swing, as the first ones would be hidden behind it; of one that overturns those that end in the fall.
 fn strong(points: &[Point]) -> Range<usize> {
     let turns = points.windows(2).enumerate().filter(|(_, two)| two[0][2] * two[1][2] < 0.0).map(|(k, _)| k + 1);
     let turns: Vec<usize> = turns.collect();
-    let Some(end) = points.last().filter(|_| turns.len() > MANY_TURNS) else { return 0..points.len() };
-    let far = |k: usize| (points[k][1] - end[1]).abs();
-    let farthest = (0..points.len()).max_by(|a, b| far(*a).total_cmp(&far(*b)).then(b.cmp(a))).unwrap_or(0);
-    let about = turns.partition_point(|turn| *turn < farthest);
-    match about.saturating_sub(STRONG / 2) {
-        from if about < STRONG || from == 0 => 0..turns[STRONG],
-        from => turns[from]..turns.get(from + STRONG).copied().unwrap_or(points.len()),
+    if turns.len() <= MANY_TURNS {
+        return 0..points.len();
     }
+    let window = |k: usize| {
+        let begin = if k == 0 { 0 } else { turns[k] };
+        begin..turns.get(k + STRONG).copied().unwrap_or(points.len())
+    };
+    let covers = |points: &[Point]| {
+        [1, 2].map(|of| {
+            let values = points.iter().map(|point| point[of]);
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+            high - low
+        })
+    };
+    let all = covers(points).map(|range| if range > 0.0 { range } else { 1.0 });
+    let part = |k: usize| covers(&points[window(k)]).into_iter().zip(all).map(|(own, all)| own / all).sum::<f64>();
+    let parts: Vec<f64> = (0..=turns.len() - STRONG).map(part).collect();
+    let most = parts.iter().copied().fold(0.0, f64::max);
+    // The middle of those that are as good, unless the first is.
+    let good = |k: &usize| parts[*k] >= AS_GOOD * most;
+    let first = (0..parts.len()).find(good).unwrap_or(0);
+    let count = (first..parts.len()).take_while(good).count();
+    window(if first == 0 { 0 } else { first + count / 2 })
 }
+
+/// Parts of an orbit that cover this part of what another covers are as good.
+const AS_GOOD: f64 = 0.99;
 
 /// What is said of a coordinate that is plotted from the ground.
 fn from_ground(recorder: &PageRecorder, curves: &Curves, coordinate: usize) -> &'static str {
@@ -506,7 +524,7 @@ const NEAR: f64 = 0.8;
 /// The points of no return, where the motion comes near them: elsewhere they would only squeeze the curve.
 fn critical_angles(recorder: &PageRecorder, moving: &[(usize, Vec<f64>)], factor: f64) -> Vec<f64> {
     let near = |(k, values): &(usize, Vec<f64>)| nears(recorder, *k, values.iter().copied());
-    guides(moving.iter().filter_map(near).flatten(), factor)
+    guides(moving.iter().filter_map(near), factor)
 }
 
 /// The points of no return of a block, if one of these angles comes near them.
@@ -516,11 +534,15 @@ fn nears(recorder: &PageRecorder, block: usize, mut angles: impl Iterator<Item =
     angles.any(|phi| (phi - middle).abs() > NEAR * room).then_some([right, left])
 }
 
-/// Lines across a plot at these angles, rad, in ascending order, each once.
-fn guides(angles: impl Iterator<Item = f64>, factor: f64) -> Vec<f64> {
-    let mut guides: Vec<f64> = angles.map(|angle| factor * angle).collect();
+/// Lines across a plot at these angles of blocks, rad, in ascending order. Of blocks that have different ones there are none: nobody could tell
+/// whose each is.
+fn guides(mut blocks: impl Iterator<Item = [f64; 2]>, factor: f64) -> Vec<f64> {
+    let Some(first) = blocks.next() else { return Vec::new() };
+    if blocks.any(|other| (0..2).any(|k| (other[k] - first[k]).abs() > SAME)) {
+        return Vec::new();
+    }
+    let mut guides = first.map(|angle| factor * angle).to_vec();
     guides.sort_by(f64::total_cmp);
-    guides.dedup_by(|a, b| (*a - *b).abs() <= SAME * factor);
     guides
 }
 
@@ -540,6 +562,26 @@ mod tests {
         assert_eq!(strong(&bounces(291)), 0..42);
         assert_eq!(strong(&bounces(12)), 0..48);
         assert_eq!(strong(&[]), 0..0);
+    }
+
+    #[test]
+    fn of_what_trembles_and_then_falls_the_fall_is_strong() {
+        let points: Vec<Point> = (0..700)
+            .map(|k| match k {
+                0..600 => [f64::from(k), 1e-3, [0.1, 0.03, -0.03, -0.1][k as usize % 4]],
+                k => [f64::from(k), -0.01 * f64::from(k - 600).powi(2), -0.02 * f64::from(k - 600)],
+            })
+            .collect();
+        let strong = strong(&points);
+        assert!(strong.contains(&600) && strong.end == 700 && strong.len() < 200, "{strong:?}");
+    }
+
+    #[test]
+    fn critical_angles_are_drawn_where_all_blocks_have_the_same() {
+        let of = |blocks: &[[f64; 2]]| guides(blocks.iter().copied(), 10.0);
+        assert_eq!(of(&[[0.3, -0.3], [0.3, -0.3 - 1e-9]]), [-3.0, 3.0]);
+        assert!(of(&[[0.3, -0.3], [0.4, -0.4]]).is_empty(), "whose?");
+        assert!(of(&[]).is_empty());
     }
 
     #[test]

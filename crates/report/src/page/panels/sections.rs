@@ -87,11 +87,14 @@ impl Panels {
                 let mean = match kind {
                     Kind::Stress => {
                         let moment = moments.iter().find(|(of, at, _)| of == beam && at == x);
-                        filter
-                            .through_the_largest(&self.curves, column, moment.map(|(.., rings)| *rings))
-                            .map(|most| most.into_iter().map(|stress| factor * stress).collect())
+                        filter.through_the_largest(&self.curves, column, moment.map(|(.., rings)| *rings)).map(|most| {
+                            (
+                                most.values.into_iter().map(|stress| factor * stress).collect(),
+                                if most.itself.contains(&true) { most.itself } else { Vec::new() },
+                            )
+                        })
                     }
-                    _ => filter.ringing(&self.curves, column),
+                    _ => filter.ringing(&self.curves, column).map(|mean| (mean, Vec::new())),
                 };
                 if kind == Kind::Moment {
                     moments.push((*beam, *x, mean.is_some()));
@@ -99,12 +102,15 @@ impl Panels {
                 let is_raw = mean.is_some();
                 let name = if is_raw { String::new() } else { label.clone() };
                 lines.push(Line { is_raw, ..Line::of(&self.curves, column, factor, name, number) });
-                over.extend(mean.map(|y| Line { label, number, y, is_raw: false, of: None }));
+                over.extend(mean.map(|(y, itself)| Line { label, number, y, is_raw: false, itself, of: None }));
             }
-            let strong = if kind == Kind::Stress {
-                "where it rings, through the largest of every"
-            } else {
-                "without vibrations of periods below"
+            let strong = match kind {
+                // Two quantities in one curve are told apart.
+                Kind::Stress if over.iter().any(|line| !line.itself.is_empty()) => {
+                    "the stress itself, where it rings dashed, through the largest of every"
+                }
+                Kind::Stress => "through the largest of every",
+                _ => "without vibrations of periods below",
             };
             let mut notes = Vec::new();
             if !over.is_empty() {

@@ -60,6 +60,9 @@ const SMALL: f64 = 0.1;
 /// Numbers of lengths as large as this are in no smaller unit than would suit them alone: a deflection of 2 mm isn't one of 2000 µm.
 const LARGE_LENGTH: f64 = 1e3;
 
+/// Numbers as large as this are in no smaller unit for the sake of others: 4 J isn't 4000 mJ.
+const LONG: f64 = 2e3;
+
 /// Numbers of a length as large as this are in a larger unit than the scene's.
 const LARGE: f64 = 1e4;
 
@@ -88,12 +91,13 @@ impl Units {
         }
         let for_least = self.alone(measure, least);
         if measure.is_length() {
-            // Small ones have a unit of their own then: the large ones are what the scene is about.
-            return if most * for_least.1 < LARGE_LENGTH { for_least } else { alone };
+            // Else small ones have a unit of their own: the large ones are what the scene is about.
+            let suits = |unit: &Unit| unit.1 > alone.1 && most * unit.1 < LARGE_LENGTH;
+            return [for_least, ("mm", 1e3)].into_iter().find(suits).unwrap_or(alone);
         }
         // What is between both is still one where it makes no long numbers of the large ones.
         let between = self.alone(measure, (most * least).sqrt());
-        [for_least, between].into_iter().find(|unit| most * unit.1 < LARGE).unwrap_or(alone)
+        [for_least, between].into_iter().find(|unit| most * unit.1 < LONG).unwrap_or(alone)
     }
 
     fn alone(&self, measure: Measure, size: f64) -> Unit {
@@ -215,6 +219,9 @@ mod tests {
         assert_eq!(of(&[(Deflection, 9e-4), (Deflection, 0.13)]), ["mm", "mm"]);
         assert_eq!(of(&[(Deflection, 6e-7), (Deflection, 2.4e-3)]), ["µm", "mm"], "not 2400 µm");
         assert_eq!(of(&[(Deflection, 3e-5), (Deflection, 2.4e-3)]), ["mm", "mm"]);
+        assert_eq!(of(&[(Deflection, 1e-4), (Deflection, 0.1)]), ["mm", "mm"], "not 0.01 cm");
+        assert_eq!(of(&[(Deflection, 4e-4), (Deflection, 0.31)]), ["mm", "mm"], "not 0.04 cm");
+        assert_eq!(of(&[(Energy, 4.0), (Energy, 1e-3)]), ["", "m"], "not 4000 mJ");
         assert_eq!(of(&[(Position, 2e-3), (Position, 0.45), (Deflection, 2e-3)]), ["cm", "cm", "mm"]);
         assert_eq!(of(&[(Energy, 13.6), (Energy, 5e-3)]), ["", "m"], "not 13600 mJ");
         assert_eq!(of(&[(Energy, 13.6), (Energy, 0.05)]), ["", ""]);
