@@ -138,10 +138,12 @@
       }),
       height: plots.margin.top + plots.margin.bottom + plots.rowHeight * points.length,
     });
+    const alternating = points.filter(({ alternates }) => alternates).map(({ point }) => contact.points[point].label);
     const [, unseen] = forces.unseen_slip?.find(([of]) => of === k) ?? [];
     const notes = [
       points.some(({ state }) => state.includes("b")) ? "Presses briefly: in at most half of the steps, as what strikes or chatters." : "",
-      forces.alternating?.includes(k) ? `Sticks and slips by turns, so that its tangential force changes from step to step: the band has what it does in most of ${forces.bucket}.` : "",
+      alternating.length === 1 ? `${alternating[0]} sticks and slips by turns, so that its tangential force changes from step to step: the band has what it does in most of ${forces.bucket}.` : "",
+      alternating.length > 1 ? `${alternating.slice(0, -1).join(", ")} and ${alternating.at(-1)} stick and slip by turns, so that their tangential forces change from step to step: the band has what each does in most of ${forces.bucket}.` : "",
       unseen ? `Slip of less than ${unseen} at a time is drawn as sticking.` : "",
     ].filter(Boolean);
     if (notes.length) htmlElement("p", "note", notes.join(" "), byId(`panel-state-${k}`));
@@ -149,7 +151,7 @@
 
   if (scenery.hidden_points > 0 || scenery.unlisted) {
     const many = scenery.hidden_points > 0 ? `No contact has plots of its own: ${scenery.hidden_points} points can touch, more than 2000.`
-      : "Contacts between blocks that no contact lists have no plots of their own.";
+      : "Pairs of blocks that no [contact] names have no plots of their own.";
     const where = network ? "The network in the picture shows their forces, and contacts.csv" : "contacts.csv";
     htmlElement("p", "note", `${many} ${where} has their impulses.`, byId("plots")).id = "hidden-contacts";
   }

@@ -150,4 +150,29 @@ fn an_impact_at_a_kink_leaves_no_peak_in_the_force() {
     let most = forces.fold(0.0, f64::max);
     // The block weighs 159 N, and no step without an impact has more than 102 N at a corner; with the impulse beside the impact it was 117 N.
     assert!((80.0..105.0).contains(&most), "{most}");
+    // The slip of a point goes on where it comes to another piece of the ground.
+    let table = std::fs::read_to_string(run.folder.join("contacts.csv")).unwrap();
+    let mut slips = std::collections::BTreeMap::<&str, (f64, f64)>::new();
+    for row in table.lines().skip(1).map(|row| row.split(',').collect::<Vec<_>>()) {
+        let slip: f64 = row.last().unwrap().parse().unwrap();
+        let (_, most) = slips
+            .entry(row[4])
+            .and_modify(|(last, most)| {
+                assert!((slip - *last).abs() < 0.01, "{row:?} after {last}");
+                (*last, *most) = (slip, most.max(slip));
+            })
+            .or_insert((slip, slip));
+        assert!(*most < 3.0);
+    }
+    let slid = run.summary.verdict[0].slid.unwrap();
+    for (point, (last, most)) in slips {
+        assert!((last - slid).abs() < 0.02 && most > 2.0, "{point}: {last} of {slid}, at most {most}");
+    }
+}
+
+/// Landings on springs are counted alike.
+#[test]
+fn impacts_on_springs_are_said_to_be_counted_by_corners() {
+    let told = summary("told-springs", &scenario("compliant-drop"), &[]);
+    assert_eq!((told.impact_count > 0, told.strikers()), (true, " (each corner counts)"));
 }

@@ -200,9 +200,6 @@ pub(super) struct ForceData {
     /// These sums, with their contacts, where they are at the times of the curves.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     sums: Vec<(usize, Column)>,
-    /// Contacts that stick and slip by turns, of which the band shows what they do in most of a stretch.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    alternating: Vec<usize>,
     /// Contacts that slip by so little in a stretch that it is drawn as sticking, with the most of it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     unseen_slip: Vec<(usize, String)>,
@@ -229,6 +226,9 @@ struct PointForces {
     impacts: Option<Column>,
     /// A letter a value: `o` open, `b` presses briefly, `k` stick, `l` slip.
     state: String,
+    /// Whether it sticks and slips by turns, so that the band shows what it does in most of a stretch.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    alternates: bool,
 }
 
 pub(super) fn time_panels(recorder: &PageRecorder, panels: &Panels) -> Vec<PanelData> {
@@ -323,13 +323,13 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
             }),
             impacts: (!forces.impacts.is_empty()).then(|| Column::of(&forces.impacts, SEEN)),
             state: state.collect(),
+            alternates: forces.alternates,
         })
     });
     let contacts = || recorder.scenery.contacts.iter().enumerate();
     let forces_of =
         |drawn: &ContactDrawn| panels.forces[drawn.first..drawn.first + drawn.points.len()].iter().flatten();
     let hiding = contacts().filter(|(_, drawn)| forces_of(drawn).any(|forces| forces.hides_slip));
-    let alternating = contacts().filter(|(_, drawn)| forces_of(drawn).any(|forces| forces.alternates));
     let sums = panels
         .sums
         .iter()
@@ -351,7 +351,6 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         redundant: (0..panels.redundant.len()).filter(|pair| panels.redundant[*pair].forces).collect(),
         shares: (0..panels.redundant.len()).filter(|pair| panels.sums_tangential(*pair)).collect(),
         sums: sums.map(|(pair, sum)| (pair, Column::of(&sum.y, SEEN_BELOW_PEAKS))).collect(),
-        alternating: alternating.map(|(pair, _)| pair).collect(),
         unseen_slip: hiding.map(|(pair, drawn)| (pair, with_digits(unseen_slip(recorder, drawn), "m", 1))).collect(),
         compliant: contacts().filter(|(_, drawn)| drawn.has_duration).map(|(pair, _)| pair).collect(),
         points: points.collect(),
