@@ -139,11 +139,11 @@
       height: plots.margin.top + plots.margin.bottom + plots.rowHeight * points.length,
     });
     const alternating = points.filter(({ alternates }) => alternates).map(({ point }) => contact.points[point].label);
+    const alternate = alternating.length > 1 ? `${alternating.slice(0, -1).join(", ")} and ${alternating.at(-1)} stick and slip` : `${alternating[0]} sticks and slips`;
     const [, unseen] = forces.unseen_slip?.find(([of]) => of === k) ?? [];
     const notes = [
       points.some(({ state }) => state.includes("b")) ? "Presses briefly: in at most half of the steps, as what strikes or chatters." : "",
-      alternating.length === 1 ? `${alternating[0]} sticks and slips by turns, so that its tangential force changes from step to step: the band has what it does in most of ${forces.bucket}.` : "",
-      alternating.length > 1 ? `${alternating.slice(0, -1).join(", ")} and ${alternating.at(-1)} stick and slip by turns, so that their tangential forces change from step to step: the band has what each does in most of ${forces.bucket}.` : "",
+      alternating.length ? sentence(`${alternate} by turns, so that tangential forces change from step to step: the band has what each point does in most of ${forces.bucket}`) : "",
       unseen ? `Slip of less than ${unseen} at a time is drawn as sticking.` : "",
     ].filter(Boolean);
     if (notes.length) htmlElement("p", "note", notes.join(" "), byId(`panel-state-${k}`));

@@ -501,7 +501,7 @@ mod tests {
     #[test]
     fn a_stress_without_the_own_weight_is_told_with_it_however_little_that_adds() {
         let told = |with: Option<f64>, is_without_weight: bool| {
-            let beam = BorneSummary {
+            let beam = super::BorneSummary {
                 beam: "shelf".to_owned(),
                 largest_stress: None,
                 part_of_yield_strength: Some(0.0093),

@@ -58,7 +58,7 @@ const SHORT: usize = 110;
 /// The longest beginning of a finding that is short and ends where a clause does.
 fn shortened(finding: &str) -> Option<&str> {
     let ends = finding.match_indices([':', ';', ',']).filter(|(end, _)| finding[end + 1..].starts_with(' '));
-    ends.map(|(end, _)| end).chain([finding.len()]).filter(|end| *end <= SHORT).last().map(|end| &finding[..end])
+    ends.map(|(end, _)| end).chain([finding.len()]).rfind(|end| *end <= SHORT).map(|end| &finding[..end])
 }
 
 /// The kind of the warning that a motion can be told up to a time before its end only.

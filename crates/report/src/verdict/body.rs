@@ -60,7 +60,7 @@ pub struct BodyVerdict {
     /// centre of one that began in flight.
     #[serde(skip)]
     pub(crate) elsewhere: Option<f64>,
-    /// How far its mass centre is from where it was at the start of the run, along what carries it, m.
+    /// How far its mass centre is from where it was at the start of the run, along what carries it, m, where that is told of what bounces.
     #[serde(skip)]
     pub(crate) flown: Option<f64>,
     /// Whether it was in the air at the start of the run.

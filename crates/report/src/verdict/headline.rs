@@ -234,7 +234,7 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         }
         Fate::Moves => match of.going {
             // What bounces doesn't slide, but may be elsewhere.
-            Some(Going::Bounces) if of.flown.is_some_and(|off| is_told(scene, of, off)) => {
+            Some(Going::Bounces) if of.flown.is_some() => {
                 beside(format!("is {}, {}", Going::Bounces.word(), place(scene, of, of.flown.unwrap_or_default())))
             }
             Some(going) => {
@@ -278,7 +278,7 @@ fn to_both_sides(scene: &Scene, of: &BodyVerdict, reached: [f64; 2], slid: f64) 
         () if is_told(scene, of, slid) => {
             format!(", in the end {} {} it", with_unit(slid.abs(), "m"), direction(scene, slid).side)
         }
-        () => ", in the end back there".to_owned(),
+        () => ", in the end back at its start".to_owned(),
     };
     format!("slid{TO_AND_FRO}, {}{in_the_end}", up_to(scene, of, reached))
 }

@@ -159,7 +159,7 @@ impl Seen {
             has_slid,
             elsewhere: if began_in_flight { flown } else { displaced }
                 .filter(|at| slides.is_some_and(|slides| (at - slides.at()).abs() >= apart)),
-            flown,
+            flown: flown.filter(|at| at.abs() >= if began_in_flight { watched.base() } else { least }),
             began_in_flight,
             rolled: Some(&self.rolls)
                 .filter(|rolls| watched.is_round && rolls.most() >= ROLLED * watched.reach)

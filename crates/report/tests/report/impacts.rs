@@ -155,18 +155,20 @@ fn an_impact_at_a_kink_leaves_no_peak_in_the_force() {
     let mut slips = std::collections::BTreeMap::<&str, (f64, f64)>::new();
     for row in table.lines().skip(1).map(|row| row.split(',').collect::<Vec<_>>()) {
         let slip: f64 = row.last().unwrap().parse().unwrap();
-        let (_, most) = slips
-            .entry(row[4])
-            .and_modify(|(last, most)| {
-                assert!((slip - *last).abs() < 0.01, "{row:?} after {last}");
-                (*last, *most) = (slip, most.max(slip));
-            })
-            .or_insert((slip, slip));
-        assert!(*most < 3.0);
+        let (last, most) = slips.entry(row[4]).or_insert((slip, slip));
+        assert!((slip - *last).abs() < 0.01, "{row:?} after {last}");
+        (*last, *most) = (slip, most.max(slip));
     }
-    let slid = run.summary.verdict[0].slid.unwrap();
+    let of = &run.summary.verdict[0];
+    let (slid, farthest) = (of.slid.unwrap(), of.farthest.unwrap());
+    assert!(slips.len() >= 2);
+    // It rocks a little as it goes, so that one foot slips farther than the other.
     for (point, (last, most)) in slips {
-        assert!((last - slid).abs() < 0.02 && most > 2.0, "{point}: {last} of {slid}, at most {most}");
+        let of_sums = [last / slid, most / farthest];
+        assert!(
+            of_sums.iter().all(|part| (part - 1.0).abs() < 0.03),
+            "{point}: {last} of {slid}, {most} of {farthest}"
+        );
     }
 }
 
