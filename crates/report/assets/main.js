@@ -150,7 +150,7 @@
 
   if (scenery.hidden_points > 0 || scenery.unlisted) {
     const many = scenery.hidden_points > 0 ? `No contact has plots of its own: ${scenery.hidden_points} points can touch, more than 2000.`
-      : "Contacts between blocks that no contact lists have no plots of their own.";
+      : "Pairs of blocks that no [contact] names have no plots of their own.";
     const where = network ? "The network in the picture shows their forces, and contacts.csv" : "contacts.csv";
     htmlElement("p", "note", `${many} ${where} has their impulses.`, byId("plots")).id = "hidden-contacts";
   }

@@ -25,7 +25,7 @@ pub(crate) fn slip(contact: &Contact<2>, duration: f64, balance: Balance) -> f64
 pub(crate) struct Impulses {
     /// In order of identity.
     sums: Vec<(ContactId, Vector<2>)>,
-    /// How far each contact has slipped since the start, m, in order of identity.
+    /// How far each contact has slipped since the start, m, in order of identity. A point has several where it goes from side to side.
     slips: Vec<(ContactId, f64)>,
     /// Memory of a row.
     #[serde(skip)]
@@ -97,6 +97,13 @@ impl Impulses {
         Some(())
     }
 
+    /// How far a contact's point has slipped since the start, m, on whatever pieces and sides of the other body.
+    fn slipped(&self, layout: &Layout, id: ContactId) -> f64 {
+        let first = self.slips.partition_point(|(of, _)| of.pair() < id.pair());
+        let of_pair = self.slips[first..].iter().take_while(|(of, _)| of.pair() == id.pair());
+        of_pair.filter(|(of, _)| layout.is_one_point(*of, id)).fold(0.0, |sum, (_, slip)| sum + slip)
+    }
+
     /// Appends the rows at the state's time, and starts over.
     pub(crate) fn rows(
         &mut self,
@@ -145,8 +152,7 @@ impl Impulses {
             }
             out.push(',');
             out.push_str(active.map_or("open", |contact| contact.does.as_str()));
-            let slipped = self.slips.binary_search_by_key(id, |(id, _)| *id);
-            push_next(out, slipped.map_or(0.0, |at| self.slips[at].1));
+            push_next(out, self.slipped(layout, *id));
             out.push('\n');
         }
         self.sums.clear();

@@ -56,8 +56,40 @@ impl FeetLine {
         }
     }
 
+    /// Whether a beam carries the block.
+    pub(crate) fn is_on_beam(&self) -> bool {
+        self.now.is_some()
+    }
+
+    /// The last peak that is told of a block on a beam which has stood since then, s: of one that has not turned since its last crossing, or not by enough,
+    /// the largest angle after that.
+    pub(crate) fn told_peak(&self, about: &RockingMonitor, since: f64) -> Option<Peak> {
+        let largest = || Some(self.monitor.extreme()).filter(|peak| peak.phi != 0.0);
+        self.last_peak(about).filter(|peak| peak.t >= since).or_else(largest).filter(|peak| peak.t >= since)
+    }
+
     /// The line's slopes at the peaks of the monitor, then at the largest angle since, rad.
     pub(crate) fn slopes(&self) -> impl Iterator<Item = Option<f64>> {
         self.peaks.iter().copied().chain(std::iter::once(self.now))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Its last swing is told from the line, or none, never one from before it settled, or from the beam's axis.
+    #[test]
+    fn of_a_block_on_a_beam_the_largest_angle_since_it_settled_stands_for_a_peak() {
+        let start = || RockingMonitor::new(0.0, 0.0);
+        let (mut line, about) = (FeetLine::new(start(), Some(0.0)), start());
+        for (t, tilt) in [(0.1, 0.02), (0.2, -0.01), (0.3, 0.004), (0.4, 0.006)] {
+            line.enter(t, tilt, Some(0.001));
+        }
+        let told = |since: f64| line.told_peak(&about, since).map(|peak| (peak.t, peak.phi));
+        assert_eq!(told(0.0), Some((0.2, -0.01)));
+        assert_eq!(told(0.25), Some((0.4, 0.006)), "not the peak before it settled");
+        assert_eq!(told(0.45), None);
+        assert!(line.is_on_beam() && !FeetLine::new(start(), None).is_on_beam());
     }
 }

@@ -210,11 +210,10 @@ fn as_told(scene: &Scene, verdict: &[BodyVerdict], record: &Record) -> Vec<BodyV
     let free = scene.blocks.iter().zip(lines).filter(|(block, _)| !block.motion.is_given());
     for (of, (_, (line, about))) in told.iter_mut().zip(free) {
         let since = of.stands_from.unwrap_or(0.0);
-        if of.last_peak.is_some()
-            && of.on_its_way.is_none()
-            && let Some(peak) = line.last_peak(about).filter(|peak| peak.t >= since)
-        {
-            (of.last_peak, of.t) = (Some(peak.phi), Some(peak.t));
+        if of.last_peak.is_some() && of.on_its_way.is_none() && line.is_on_beam() {
+            // None from the beam's undeformed axis beside a φ/α from the line.
+            let peak = line.told_peak(about, since);
+            (of.last_peak, of.t) = (peak.map(|peak| peak.phi), peak.map(|peak| peak.t));
             of.against = Some("the line between its feet".to_owned());
         }
     }
@@ -244,9 +243,6 @@ pub struct BorneSummary {
     pub reactions: Vec<ReactionRange>,
 }
 
-/// What a beam's own weight adds to its stress is told from this part of the yield strength on.
-const WEIGHT_ADDS: f64 = 0.02;
-
 impl BorneSummary {
     fn new(scene: &Scene, borne: &BeamRecord) -> Self {
         let of = scene.beams.iter().find(|beam| beam.name == borne.beam);
@@ -268,16 +264,13 @@ impl BorneSummary {
         self.part_with_own_weight.or(self.part_of_yield_strength)
     }
 
-    /// What is said of the beam's own weight after the part of its yield strength: nothing unless the scene leaves it out; and what it adds, where
-    /// that is worth telling.
+    /// What is said of the beam's own weight after the part of its yield strength: nothing unless the scene leaves it out; and the part with it, where
+    /// that is known.
     pub(crate) fn about_weight(&self, percent: impl Fn(f64) -> String) -> String {
         if !self.is_without_weight {
             return String::new();
         }
-        let without = self.part_of_yield_strength.unwrap_or_default();
-        let adds = |with: &f64| (with - without).abs() > WEIGHT_ADDS || (*with > 1.0) != (without > 1.0);
-        let with = self.part_with_own_weight.filter(adds);
-        let with = with.map_or_else(String::new, |with| format!(", {} with it", percent(with)));
+        let with = self.part_with_own_weight.map_or_else(String::new, |with| format!(", {} with it", percent(with)));
         format!(" without its own weight{with}")
     }
 }
@@ -504,6 +497,25 @@ impl Summary {
 #[cfg(test)]
 mod tests {
     use super::EndedWord::{self, Complete, DiskFull, Diverged, Interrupted, Unconverged};
+
+    #[test]
+    fn a_stress_without_the_own_weight_is_told_with_it_however_little_that_adds() {
+        let told = |with: Option<f64>, is_without_weight: bool| {
+            let beam = super::BorneSummary {
+                beam: "shelf".to_owned(),
+                largest_stress: None,
+                part_of_yield_strength: Some(0.0093),
+                largest_stress_with_own_weight: None,
+                part_with_own_weight: with,
+                is_without_weight,
+                reactions: Vec::new(),
+            };
+            beam.about_weight(|part| format!("{} %", 100.0 * part))
+        };
+        assert_eq!(told(Some(0.0181), true), " without its own weight, 1.81 % with it");
+        assert_eq!(told(None, true), " without its own weight");
+        assert_eq!(told(None, false), "");
+    }
 
     #[test]
     fn how_a_run_ended_is_written_by_its_word() {

@@ -25,8 +25,6 @@ impl Told {
             Some(parts) => parts.iter().all(|part| part.shape.core().len() > 2 && part.shape.radius() == 0.0),
         };
         let strikers = match () {
-            // On springs nothing strikes.
-            () if scene.contacts.iter().any(|contact| contact.law.impact.has_duration()) => "",
             () if scene.blocks.iter().all(is_sharp) => " (each corner counts)",
             () => " (each point counts)",
         };
@@ -37,7 +35,7 @@ impl Told {
 
 impl Summary {
     /// How impacts are counted, in words after their number: each corner that strikes is one, so that a block that lands flat has two. Other words
-    /// where there are round blocks; none where there are no impacts, or contacts with springs.
+    /// where there are round blocks; none where there are no impacts. On springs they are landings, which are counted alike.
     #[must_use]
     pub fn strikers(&self) -> &'static str {
         if self.impact_count > 0 { self.told.strikers } else { "" }

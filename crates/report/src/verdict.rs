@@ -146,12 +146,14 @@ struct Seen {
     stands_from: Option<f64>,
     /// Where it began to stand along what carries it, m.
     stood: Option<f64>,
+    /// Where its mass centre was along what carries it at the start of the run, m.
+    released: f64,
     /// How it has slid, from the start of the run.
     slides: Slides,
     /// How far it had slid, and in all, m, when it passed the point of no return that it is past, or its column did.
     slid_before: Option<[f64; 2]>,
-    /// By how much it has rolled on what it touches, rad; of a round one.
-    rolled: f64,
+    /// How far it has rolled on what it touches, m; of a round one.
+    rolls: Slides,
     /// By how much it turned in the last step, rad; memory.
     #[serde(skip)]
     turn: f64,
@@ -233,6 +235,7 @@ impl Fates {
             let height = (stands && self.joints.only_by_blocks(number)).then(|| watched.height(layout, number, state));
             self.blocks.push(Seen {
                 began,
+                released: watched.centre(layout, number, state),
                 from: angle,
                 angle,
                 stands_from,

@@ -40,7 +40,7 @@ impl Warning {
             YIELD => "stress beyond the yield strength",
             HORIZON => "no prediction up to the end",
             "ended" => "an early end",
-            "scene" => self.finding().filter(|of| of.len() <= SHORT).unwrap_or("the scene"),
+            "scene" => self.finding().and_then(shortened).unwrap_or("the scene"),
             other => other,
         }
     }
@@ -53,7 +53,13 @@ impl Warning {
 }
 
 /// A finding of a scene of up to so many bytes says itself what it is about.
-const SHORT: usize = 90;
+const SHORT: usize = 110;
+
+/// The longest beginning of a finding that is short and ends where a clause does.
+fn shortened(finding: &str) -> Option<&str> {
+    let ends = finding.match_indices([':', ';', ',']).filter(|(end, _)| finding[end + 1..].starts_with(' '));
+    ends.map(|(end, _)| end).chain([finding.len()]).rfind(|end| *end <= SHORT).map(|end| &finding[..end])
+}
 
 /// The kind of the warning that a motion can be told up to a time before its end only.
 pub const HORIZON: &str = "horizon";
@@ -137,7 +143,20 @@ mod tests {
         );
         log.enter_finding("scene", format!("warning: a.toml:5:1: contact.a: {}", "long ".repeat(40)));
         let subjects: Vec<&str> = log.warnings().iter().map(Warning::subject).collect();
-        assert_eq!(subjects, ["material.steel: this material is not used", "the scene"]);
+        assert_eq!(subjects, ["material.steel: this material is not used", "contact.a"]);
+    }
+
+    #[test]
+    fn of_a_long_finding_of_a_scene_the_first_clauses_are_its_subject() {
+        let of = |text: &str| {
+            Warning { code: "scene".into(), count: 1, first_t: None, text: text.to_owned() }.subject().to_owned()
+        };
+        let tilted = "warning: a.toml:15:8: block.post.tilt = \"12 deg\": at or beyond the critical angle atan(width/height) = 8.53 deg of this block";
+        assert_eq!(
+            of(&format!("{tilted}: released at rest it overturns\n  help: check the angle and its unit")),
+            &tilted[22..]
+        );
+        assert_eq!(of(&format!("warning: a.toml:5:1: {}", "long ".repeat(40))), "the scene");
     }
 
     #[test]

@@ -320,6 +320,19 @@ impl Layout {
         Some(ContactNames { contact: &contact.name, between, point: PointName { block: Some(between[owner]), point } })
     }
 
+    /// Whether two contacts are of one point by their names, as where a corner goes on from one piece of a profile, or one side of a block, to the next.
+    #[must_use]
+    pub fn is_one_point(&self, a: ContactId, b: ContactId) -> bool {
+        if a == b || a.pair() != b.pair() {
+            return a == b;
+        }
+        if let Some(pair) = self.pairs.get(a.pair() as usize) {
+            return pair.point(a).is_some_and(|point| pair.point(b) == Some(point));
+        }
+        let [a, b] = [a, b].map(|id| CornerOnSide::from_number(id.point()));
+        (a.owner, a.corner) == (b.owner, b.corner)
+    }
+
     /// The numbers of all contacts that share a name: listed pairs one by one, then the contacts of
     /// the crowd; `None` if there is none with this pair.
     #[must_use]

@@ -183,12 +183,21 @@ fn damping(of: &Damping) -> Option<String> {
     (!told.is_empty()).then(|| told.join("; "))
 }
 
+/// How many pairs a contact has beside the one that is named, in words after that.
+fn more_pairs(pairs: usize) -> String {
+    match pairs.saturating_sub(1) {
+        0 => String::new(),
+        1 => " and 1 more pair".to_owned(),
+        more => format!(" and {more} more pairs"),
+    }
+}
+
 fn contact(scene: &Scene, of: &ContactScene, pairs: usize) -> Vec<String> {
     let [low, high] = of.friction_of_feet();
     let friction =
         if low == high { shortest(low, 4) } else { format!("{} to {}", shortest(low, 4), shortest(high, 4)) };
     let bodies = format!("{}, {}", scene.blocks[of.block].name, scene.name_of(of.surface));
-    let between = if pairs > 1 { format!("{bodies} and {} more pairs", pairs - 1) } else { bodies };
+    let between = bodies + &more_pairs(pairs);
     let (restitution, law) = match of.law.impact {
         ImpactLaw::Newton => (Some(of.law.restitution), None),
         ImpactLaw::Poisson => (Some(of.law.restitution), Some("Poisson".to_owned())),
@@ -210,6 +219,11 @@ fn contact(scene: &Scene, of: &ContactScene, pairs: usize) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use crate::simulation::Simulation;
+
+    #[test]
+    fn one_more_pair_is_told_as_one() {
+        assert_eq!([1, 2, 3].map(super::more_pairs), ["", " and 1 more pair", " and 2 more pairs"]);
+    }
 
     #[test]
     fn the_data_of_a_scene_are_those_of_its_file() {

@@ -244,8 +244,9 @@ fn tilt(block: &BlockScene, incline: f64, touches: bool, document: &Document) ->
         Placement::On { tilt, .. } => ("tilt", incline + tilt, [0.0, block.critical_angle()?]),
         Placement::Free { angle, .. } => {
             let [flat, alpha] = block.flat_near(angle)?;
-            // In flight any angle is fine, and so is one at random.
-            let is_told = touches && document.is_given(&format!("block.{table}.angle"));
+            // In flight any angle is fine, and so is one at random. What is thrown isn't released at rest.
+            let is_at_rest = block.velocity == [0.0; 2] && block.spin == 0.0;
+            let is_told = touches && is_at_rest && document.is_given(&format!("block.{table}.angle"));
             if !is_told || (angle - flat).abs() < alpha {
                 return None;
             }

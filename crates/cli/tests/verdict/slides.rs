@@ -214,7 +214,8 @@ fn what_is_thrown_and_then_slides_has_slid_since_it_landed() {
     assert!((slid - wanted).abs() < 2.0 * (t[landed] - t[landed - 1]) && wanted > 0.4, "{slid} of {wanted}");
     let headline = ran.summary["headline"].as_str().unwrap();
     assert!(
-        headline.starts_with("`b` slid by 49") && headline.contains(" mm to the right and came to rest"),
+        headline.starts_with("`b` slid by 49")
+            && headline.contains(" m right of where it was released) and came to rest"),
         "{headline}"
     );
 }

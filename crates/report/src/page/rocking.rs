@@ -159,6 +159,10 @@ pub(crate) fn half_cycles_and_left_out(
                 continue;
             }
             hits += usize::from(hit.is_some());
+            // A row of dashes.
+            if omega.is_none() && peak_after.is_none() {
+                continue;
+            }
             let lifted = |peak: &PeakRow| Some(lift(peak.phi, peak.line?, alpha));
             let lifts = before.filter(|peak| peak.phi.abs() >= TELLING * alpha).zip(peaks.peek());
             let lift = lifts.filter(|_| peak_after.is_some()).and_then(|(before, after)| {

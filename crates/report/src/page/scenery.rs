@@ -13,7 +13,9 @@ use teeter_beam::{Axial, Hold, Support};
 use teeter_detect::OnSide;
 use teeter_integrator::BeamFace;
 use teeter_scenario::physical::{self, PhysicalTable};
-use teeter_scenario::scene::{self, Crowd, Display, ForceScene, LoadScene, RecordScene, Scene, SupportingBody};
+use teeter_scenario::scene::{
+    self, BlockScene, Crowd, Display, ForceScene, LoadScene, Placement, RecordScene, Scene, SupportingBody,
+};
 use teeter_scenario::simulation::Layout;
 use teeter_scenario::wording;
 
@@ -179,6 +181,9 @@ pub(crate) struct Scenery {
     listed: Vec<(usize, SupportingBody)>,
     #[serde(skip)]
     crowd: Option<Arc<Crowd>>,
+    /// Of each block whether it was placed on another one.
+    #[serde(skip)]
+    on_blocks: Vec<bool>,
     /// The forces on blocks, and the loads on beams.
     #[serde(skip)]
     pub(crate) forces: Vec<ForceScene>,
@@ -267,6 +272,11 @@ impl Scenery {
             SupportingBody::Block(other) => [*one, *other].contains(&block),
             SupportingBody::Ground | SupportingBody::Beam(_) => false,
         }) || self.crowd.is_some()
+    }
+
+    /// Whether a block stands on another one, against which its angle counts.
+    pub(crate) fn is_on_block(&self, block: usize) -> bool {
+        self.on_blocks.get(block).is_some_and(|is_on_block| *is_on_block)
     }
 
     /// Whether a block stands on a beam.
@@ -427,6 +437,12 @@ impl Scenery {
             hidden_points: if all > MOST_POINTS { all } else { 0 },
             unlisted: scene.crowd.is_some(),
             listed: scene.contacts.iter().map(|contact| (contact.block, contact.surface)).collect(),
+            on_blocks: {
+                let is_on_block = |block: &BlockScene| {
+                    matches!(block.placement, Placement::On { support: SupportingBody::Block(_), .. })
+                };
+                scene.blocks.iter().map(is_on_block).collect()
+            },
             crowd: layout.crowd.as_ref().map(|place| Arc::clone(&place.crowd)),
             forces: scene.forces.clone(),
             loads: scene.loads.clone(),

@@ -20,6 +20,9 @@ pub struct ModelSummary {
     /// The most contacts that there can be at once, but for those of beams with sides of blocks:
     /// the same number as in `teeter check`.
     pub possible_contacts: usize,
+    /// Whether ends and humps of beams may touch sides of blocks, too.
+    #[serde(skip)]
+    pub(crate) has_sides: bool,
     /// The forces on blocks and the loads on beams, with their size, which their signals multiply.
     pub loads: Vec<String>,
     /// Velocities of blocks and beams together.
@@ -100,6 +103,7 @@ impl ModelSummary {
             ground: scene.ground.is_some(),
             contacts: names_once(layout.contact_names()),
             possible_contacts: layout.possible_contacts,
+            has_sides: scene.contacts.iter().any(|contact| contact.sides),
             loads: wording::loads(scene),
             left_out: teeter_scenario::left_out(scene),
             extent: required.extent.word(),

@@ -56,12 +56,19 @@ pub struct BodyVerdict {
     /// Whether it slid by as much as is told.
     #[serde(skip)]
     pub(crate) has_slid: bool,
-    /// Where it is along what carries it, m, of one that stood from the start and got there by hops and flights, too.
+    /// How far it is from its start along what carries it, m, of one that got there by hops and flights, too: the middle of its base, or the mass
+    /// centre of one that began in flight.
     #[serde(skip)]
     pub(crate) elsewhere: Option<f64>,
-    /// By how much it has rolled on what it touches, rad, counter-clockwise positive; of a round one.
+    /// How far its mass centre is from where it was at the start of the run, along what carries it, m, where that is told of what bounces.
     #[serde(skip)]
-    pub(crate) rolled: Option<f64>,
+    pub(crate) flown: Option<f64>,
+    /// Whether it was in the air at the start of the run.
+    #[serde(skip)]
+    pub(crate) began_in_flight: bool,
+    /// How far it has rolled on what it touches, to the right positive, and to and fro in all, m; of a round one.
+    #[serde(skip)]
+    pub(crate) rolled: Option<[f64; 2]>,
     /// The farthest that it slid, of one that slid back from there, m; to the right positive. Of one that has then
     /// slid farther past its start, where it turned.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -153,6 +160,11 @@ pub struct BodyVerdict {
 }
 
 impl BodyVerdict {
+    /// Whether it has only moved with the beam on which it stood, which isn't at rest itself since the block is.
+    pub(crate) fn moves_with_beam(&self) -> bool {
+        self.stood_on.is_some() && self.unmoved_from != self.rests_from
+    }
+
     /// Its largest φ/α as it is told: of the lowest block of a column that of all of it; none where nothing of its own brings it back.
     pub(crate) fn share(&self) -> Option<f64> {
         self.column.or(self.max_phi_over_alpha).filter(|_| self.past_edge.is_none())

@@ -1,7 +1,7 @@
 //! How a block moves that does so at the end of a run and has no other fate: it bounces, rolls, slides or falls (`docs/verdict.md`).
 
 use super::standing::SETTLED;
-use super::{BEGAN_TO_TIP, FLAT, Fates, Seen, Watch, Watched};
+use super::{BEGAN_TO_TIP, FLAT, Fates, ROLLED, Seen, Watch, Watched};
 use serde::{Deserialize, Serialize};
 use teeter_integrator::{State, StepReport};
 use teeter_scenario::scene::SupportingBody;
@@ -186,7 +186,9 @@ impl Fates {
         for (number, (seen, watched)) in self.blocks.iter_mut().zip(&watch.blocks).enumerate() {
             let touches = || seen.touched.last == Some(state.t);
             if watched.is_round && touches() && rolls(watched, watched.velocity(layout, number, state)) {
-                seen.rolled += seen.turn;
+                // It turns counter-clockwise as it goes to the left.
+                let (by, least) = (-watched.reach * seen.turn, ROLLED * watched.reach);
+                seen.rolls.go(by, state.t, least, FLAT * watched.still_time * watched.still_speed);
             }
         }
     }

@@ -116,7 +116,9 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     // Both in the unit of the larger.
     let far = of.slid.into_iter().chain(of.farthest).fold(0.0, |far: f64, way| far.max(way.abs()));
     let by = |way: f64| format!("{} {}", like(way.abs(), far, "m"), direction(scene, way).way);
+    let both_sides = of.to_and_fro.filter(|reached| reached.iter().all(|way| is_told(scene, of, *way)));
     let slid = of.slid.map_or_else(String::new, |slid| match of.farthest {
+        _ if both_sides.is_some() => to_both_sides(scene, of, both_sides.unwrap_or_default(), slid),
         None => format!("slid by {}", by(slid)),
         Some(farthest) if of.elsewhere.is_some() => format!("slid {}, then {}", by(farthest), by(slid - farthest)),
         Some(farthest) if !is_told(scene, of, slid) => format!("slid {}, then back to its start", by(farthest)),
@@ -137,7 +139,7 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     let rolled = of
         .rolled
         .filter(|_| of.going != Some(Going::Rolls))
-        .map(|turn| format!("rolled {}, {then}", rolled(scene, of, turn)));
+        .map(|ways| format!("rolled{}, {then}", rolled(scene, of, ways)));
     let moving = if of.is_carried { moving_base(scene, &[of]) } else { "" };
     // Where nothing is said, it rests on its base.
     let side = side_below(of).filter(|_| of.lies_on != Some(Side::Base)).unwrap_or_default();
@@ -232,16 +234,16 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         }
         Fate::Moves => match of.going {
             // What bounces doesn't slide, but may be elsewhere.
-            Some(Going::Bounces) if of.displaced.is_some_and(|off| is_told(scene, of, off)) => {
-                let off = of.displaced.unwrap_or_default();
-                let side = direction(scene, off).side;
-                beside(format!("is {}, {} {side} its start", Going::Bounces.word(), with_unit(off.abs(), "m")))
+            Some(Going::Bounces) if of.flown.is_some() => {
+                beside(format!("is {}, {}", Going::Bounces.word(), place(scene, of, of.flown.unwrap_or_default())))
             }
             Some(going) => {
                 let on = of.on_what_moves.map_or_else(String::new, |what| format!(", on {what} that moves"));
                 let so_far = of.rolled.filter(|_| going == Going::Rolls);
                 let so_far =
-                    so_far.map_or_else(String::new, |turn| format!(", {} so far", self::rolled(scene, of, turn)));
+                    so_far.map_or_else(String::new, |ways| format!("{} so far", self::rolled(scene, of, ways)));
+                // How goes before how far.
+                let so_far = if so_far.starts_with(TO_AND_FRO) { so_far } else { so_far.replacen(' ', ", ", 1) };
                 let rocked = of.stopped_rocking;
                 let rocked = rocked.map_or_else(String::new, |t| format!("stopped rocking at {}, ", time(t)));
                 beside(format!("{rocked}is {}{on}{so_far}", going.word()))
@@ -252,11 +254,46 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     format!("{}{fate}{}", tumbled.or(rolled).unwrap_or_default(), hopped(scene, of))
 }
 
-/// By how much a round block rolled, in words after "rolled".
-fn rolled(scene: &Scene, of: &BodyVerdict, turn: f64) -> String {
+/// What goes before how far something went that turned round.
+const TO_AND_FRO: &str = " to and fro";
+
+/// How far a round block rolled, in words after "rolled", and in all (m), where that is more.
+fn rolled(scene: &Scene, of: &BodyVerdict, [at, in_all]: [f64; 2]) -> String {
     let radius = scene.blocks.iter().find(|block| block.name == of.body).map_or(0.0, BlockScene::radius);
-    let (way, far) = (direction(scene, -turn).way, with_unit(radius * turn.abs(), "m"));
-    format!("by {far} {way} ({})", turns(turn.abs()))
+    let turn = if radius > 0.0 { at.abs() / radius } else { 0.0 };
+    let (way, far) = (direction(scene, at).way, with_unit(at.abs(), "m"));
+    let by = format!("by {far} {way} ({})", turns(turn));
+    if in_all <= MORE * at.abs() {
+        return format!(" {by}");
+    }
+    let by = if turn < super::ROLLED { "and back to its start".to_owned() } else { by };
+    format!("{TO_AND_FRO}, {} in all, {by}", with_unit(in_all, "m"))
+}
+
+/// How a block slid to both sides of its start (m) and where it is by that, in words.
+fn to_both_sides(scene: &Scene, of: &BodyVerdict, reached: [f64; 2], slid: f64) -> String {
+    let in_the_end = match () {
+        // Hops and flights took it elsewhere.
+        () if of.elsewhere.is_some() => String::new(),
+        () if is_told(scene, of, slid) => {
+            format!(", in the end {} {} it", with_unit(slid.abs(), "m"), direction(scene, slid).side)
+        }
+        () => ", in the end back at its start".to_owned(),
+    };
+    format!("slid{TO_AND_FRO}, {}{in_the_end}", up_to(scene, of, reached))
+}
+
+/// Where a block is that is so far from its start along what carries it (m), in words: what began in flight stood nowhere before.
+fn place(scene: &Scene, of: &BodyVerdict, at: f64) -> String {
+    let [start, back] = match of.began_in_flight {
+        true => ["where it was released", "back where it was released"],
+        false => ["its start", "back at its start"],
+    };
+    if is_told(scene, of, at) {
+        format!("{} {} {start}", with_unit(at.abs(), "m"), direction(scene, at).side)
+    } else {
+        back.to_owned()
+    }
 }
 
 /// Where a block is that doesn't slide, in words, if that is further from its start than its base is long: hops and flights took it there.
@@ -265,9 +302,9 @@ fn hopped(scene: &Scene, of: &BodyVerdict) -> String {
     let told =
         matches!(of.what, Fate::Rests | Fate::Rocks | Fate::Moves) && !of.has_slid && of.going != Some(Going::Bounces);
     let at = of.elsewhere.filter(|at| told && block.is_some_and(|block| at.abs() > block.base()));
-    at.map_or_else(String::new, |at| {
-        format!(", {} {} its start by hops and flights", with_unit(at.abs(), "m"), direction(scene, at).side)
-    })
+    // What began in flight is told to have been released.
+    let how = if of.began_in_flight { "" } else { " by hops and flights" };
+    at.map_or_else(String::new, |at| format!(", {}{how}", place(scene, of, at)))
 }
 
 /// On what blocks stand that have stopped sliding, in words, if the same moves under all of them.
@@ -365,11 +402,8 @@ fn beside_slid(scene: &Scene, of: &BodyVerdict) -> String {
     let told = of.farthest.map_or(slid.abs(), |farthest| farthest.abs() + (slid - farthest).abs());
     let in_all = of.slid_in_all.filter(|in_all| *in_all > MORE * told && is_told(scene, of, in_all - told));
     let in_all = in_all.map(|in_all| format!("{} in all", with_unit(in_all, "m")));
-    let place = of.elsewhere.map(|at| {
-        let at_start = !is_told(scene, of, at);
-        let where_to = || format!("{} {} its start", with_unit(at.abs(), "m"), direction(scene, at).side);
-        format!("with hops and flights {}", if at_start { "back at its start".to_owned() } else { where_to() })
-    });
+    let how = if of.began_in_flight { "" } else { "with hops and flights " };
+    let place = of.elsewhere.map(|at| format!("{how}{}", place(scene, of, at)));
     let told: Vec<String> = in_all.into_iter().chain(place).collect();
     if told.is_empty() { String::new() } else { format!(" ({})", told.join(", ")) }
 }

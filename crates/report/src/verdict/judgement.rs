@@ -34,6 +34,10 @@ impl Seen {
         let place = watched.place(layout, number, state);
         let stays_up = overturned.is_none() && fell.is_none();
         let displaced = self.stood.zip(place).map(|(from, to)| to - from).filter(|_| stays_up);
+        // What began in flight, or flies at the end, turns about its mass centre: no foot says where it is.
+        let began_in_flight = self.stands_from != Some(0.0);
+        let flown =
+            Some(watched.centre(layout, number, state) - self.released).filter(|_| stays_up && watched.feet.is_some());
         let slides = Some(&self.slides).filter(|_| stays_up && self.touched.any());
         // What fell from its place slid out of it as it did: where the one ends and the other begins isn't told.
         let slid = match overturned {
@@ -91,8 +95,8 @@ impl Seen {
             .and_then(|_| side_on(watched.slope(&state.q)).or_else(|| side_on(watched.turn(layout, number, state))));
         let leans = rests.is_some() && lies_on.is_none() && watched.outline.is_some();
         let turned = self.angle - self.from;
-        // Where pieces of a profile meet, a base goes a little less far than its feet.
-        let apart = if watched.carrier.is_terrain() { watched.base() } else { least };
+        // Where pieces of a profile meet, a base goes a little less far than its feet. What comes down turns over as it does.
+        let apart = if watched.carrier.is_terrain() || began_in_flight { watched.base() } else { least };
         let is_free = matches!(block.placement, Placement::Free { .. });
         let may_tumble = is_free && !watched.is_round && what != Fate::Overturned;
         let tumbled = self.began.filter(|_| may_tumble).map(|_| turned);
@@ -153,10 +157,13 @@ impl Seen {
             farthest: slides.and_then(|slides| slides.farthest(least)),
             displaced,
             has_slid,
-            elsewhere: displaced.filter(|at| {
-                self.stands_from == Some(0.0) && slides.is_some_and(|slides| (at - slides.at()).abs() >= apart)
-            }),
-            rolled: (watched.is_round && self.rolled.abs() >= ROLLED).then_some(self.rolled),
+            elsewhere: if began_in_flight { flown } else { displaced }
+                .filter(|at| slides.is_some_and(|slides| (at - slides.at()).abs() >= apart)),
+            flown: flown.filter(|at| at.abs() >= if began_in_flight { watched.base() } else { least }),
+            began_in_flight,
+            rolled: Some(&self.rolls)
+                .filter(|rolls| watched.is_round && rolls.most() >= ROLLED * watched.reach)
+                .map(|rolls| [rolls.at(), rolls.in_all()]),
             to_and_fro: to_and_fro.map(|slides| slides.reached()),
             is_driven: state.t < watched.driven_until,
             stopped,

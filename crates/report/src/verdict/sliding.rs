@@ -9,7 +9,7 @@ use teeter_integrator::StepReport;
 /// What has slid on for this many times its longest way to or fro goes its own way.
 const USUAL: f64 = 2.0;
 
-/// The way that a block has slid, from the start of the run, to the right positive.
+/// The way that a block has slid, or a round one rolled, from the start of the run, to the right positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Slides {
     /// How far it is by all of its slides, m.
@@ -34,7 +34,7 @@ pub(super) struct Slides {
 
 impl Slides {
     /// It slides by so much, m, up to the time `t` (s); `least` (m) is how far it has to go to be told, `creeps` (m) what doesn't count as sliding on.
-    fn go(&mut self, by: f64, t: f64, least: f64, creeps: f64) {
+    pub(super) fn go(&mut self, by: f64, t: f64, least: f64, creeps: f64) {
         self.at += by;
         self.in_all += by.abs();
         let at = self.at;

@@ -199,11 +199,18 @@ impl Watched {
         self.carrier.clearance([q[0], q[1]], self.feet_at(q), self.has_face, layout, &state.q)
     }
 
+    /// Where its mass centre is along what carries it, m.
+    pub(super) fn centre(&self, layout: &Layout, number: usize, state: &State) -> f64 {
+        let q = &state.q[layout.blocks[number].range.clone()];
+        self.carrier.along([q[0], q[1]], layout, &state.q)
+    }
+
     /// Where the middle of its base stands along what carries it, m: put flat about the foot on which it is tilted.
     pub(super) fn place(&self, layout: &Layout, number: usize, state: &State) -> Option<f64> {
         let [left, right] = self.feet?;
         let q = &state.q[layout.blocks[number].range.clone()];
-        let ahead = self.against_carrier(layout, number, &state.q) >= 0.0;
+        // However often it has turned round.
+        let ahead = self.against_carrier(layout, number, &state.q).sin() >= 0.0;
         let [x, y] = if ahead { left } else { right };
         let (sin, cos) = q[2].sin_cos();
         let half = 0.5 * (right[0] - left[0]);

@@ -20,6 +20,81 @@ fn what_bounces_neither_rocks_nor_slides() {
     assert!(bouncing.html.contains("id=\"no-half-cycles\""), "it says why");
 }
 
+fn dropped(name: &str, end: &str, step: &str, block: &str, floor: &str) -> String {
+    let text = format!(
+        "[time]\nend = '{end}'\nstep = '{step}'\n[ground]\n[block.b]\ndepth = '10 cm'\n{block}[contact.feet]\nbetween = ['b', 'ground']\n{floor}"
+    );
+    run(name, &text).summary.headline
+}
+
+/// Nothing pushes it sideways: its mass centre stays over one place, however it turns in the air.
+#[test]
+fn what_flies_is_where_its_mass_centre_is() {
+    let block =
+        "density = '700 kg/m^3'\nwidth = '30 cm'\nheight = '10 cm'\nposition = ['0 m', '50 cm']\nangle = '10 deg'\n";
+    let headline = dropped("puck", "20 s", "500 us", block, "friction = 0\nrestitution = 0.98\n");
+    assert!(headline.contains("is still bouncing") && !headline.contains(" of "), "{headline}");
+}
+
+/// It slid by no more than 8 mm of more than a metre.
+#[test]
+fn what_flew_before_it_slid_is_told_where_it_is() {
+    let block = "density = '2000 kg/m^3'\nwidth = '12 cm'\nheight = '20 cm'\nposition = ['0 m', '80 cm']\nangle = '35 deg'\n\
+        spin = '4 rad/s'\nvelocity = ['0.8 m/s', '0 m/s']\n";
+    let headline = dropped("die", "3 s", "200 us", block, "friction = 0.4\nrestitution = 0.5\n");
+    assert!(headline.contains("`b` slid by 7.") && headline.contains(" (1.13"), "{headline}");
+    assert!(headline.contains(" m right of where it was released) and came to rest"), "{headline}");
+}
+
+/// The two have a contact that is listed, but neither stands on the other.
+#[test]
+fn blocks_beside_each_other_do_not_stand_on_each_other() {
+    let block = |name: &str, at: &str| {
+        format!(
+            "[block.{name}]\ndensity = '2000 kg/m^3'\nwidth = '10 cm'\nheight = '40 cm'\ndepth = '10 cm'\non = 'ground'\nat = '{at}'\n\
+             tilt = '5 deg'\n"
+        )
+    };
+    let text = format!(
+        "[time]\nend = '1 s'\nstep = '200 us'\n[ground]\n{}{}[contact.feet]\nbetween = ['*', 'ground']\nfriction = 0.6\n\
+         [contact.sides]\nbetween = ['a', 'b']\nfriction = 0.3\n",
+        block("a", "0 m"),
+        block("b", "30 cm")
+    );
+    let beside = run("beside", &text);
+    assert!(half_cycles(&beside.page, &beside.summary).iter().any(|cycle| cycle.omega.is_some()));
+    assert!(!beside.html.contains("stands on another one"));
+}
+
+/// A joint closes with the foot of the column, which then falls: neither velocities nor a peak are known.
+#[test]
+fn no_half_cycle_is_a_row_of_dashes() {
+    let text = "[time]\nend = '1 s'\nstep = '500 us'\n[signal.pulse]\nshape = 'one-sine'\nfrequency = '1.6 Hz'\nstart = '0.2 s'\n\
+        [ground]\nmotion = { acceleration = ['3.8 m/s^2', '0 m/s^2'], signal = 'pulse' }\n[block.stone]\ndensity = '2400 kg/m^3'\n\
+        width = '14 cm'\nheight = '20 cm'\ndepth = '14 cm'\non = 'ground'\nat = '75 cm'\nrepeat = { count = 3, stacked = true }\n\
+        [contact.base]\nbetween = ['stone-*', 'ground']\nfriction = 0.7\n[contact.joints]\nbetween = ['stone-*', 'stone-*']\nfriction = 0.7\n";
+    let falls = run("column-falls-after-a-swing", text);
+    assert!(!falls.summary.crossings.is_empty());
+    for cycle in half_cycles(&falls.page, &falls.summary) {
+        assert!(cycle.omega.is_some() || cycle.peak_after.is_some(), "{cycle:?}");
+    }
+}
+
+/// On ground that is shaken for a while.
+#[test]
+fn what_slid_to_both_sides_and_came_to_rest_is_told_to_both() {
+    let text = "[time]\nend = '5 s'\nstep = '1 ms'\n[ground]\nmotion = { acceleration = ['3 m/s^2', '0 m/s^2'], signal = 's' }\n\
+        [signal.s]\nshape = 'product'\nfactors = ['sine', 'envelope']\n[signal.sine]\nshape = 'harmonic'\nfrequency = '1 Hz'\n\
+        [signal.envelope]\nshape = 'half-sine'\nduration = '3.5 s'\n[block.b]\ndensity = '2500 kg/m^3'\nwidth = '1 m'\nheight = '20 cm'\n\
+        depth = '1 m'\non = 'ground'\nat = '0 m'\n[contact.c]\nbetween = ['b', 'ground']\nfriction = 0.1\n";
+    let ran = run("both-sides", text);
+    let headline = &ran.summary.headline;
+    assert!(headline.starts_with("`b` slid to and fro, up to "), "{headline}");
+    for told in [" left of and ", " right of its start, in the end ", " mm left of it (", " in all) and came to rest"] {
+        assert!(headline.contains(told), "{told}: {headline}");
+    }
+}
+
 /// Three blocks on each other, tilted as one, which rock on the base of the lowest.
 #[test]
 fn blocks_that_turn_as_one_rock_as_a_column() {
@@ -101,6 +176,13 @@ fn what_stands_on_a_beam_that_moves_says_so() {
         [contact.b]\nbetween = ['crate', 'bridge']\nfriction = 0.4\n";
     let headline = run("on-a-bridge", text).summary.headline;
     assert_eq!(headline, "`crate` stood on `bridge` throughout");
+    // Until the wagon is off it is as still as the beam, which begins to swing then.
+    let off = run("off-a-bridge", &text.replace("end = '2 s'", "end = '2.5 s'"));
+    assert!(off.summary.rests_from.is_some_and(|t| t > 0.0), "{:?}", off.summary.rests_from);
+    assert_eq!(off.summary.headline, "`crate` stood on `bridge` throughout");
+    assert!(!off.html.contains("<dt>All at rest"));
+    // Its corners, and the ends of the beam, which its sides could touch.
+    assert!(off.html.contains("; 4 possible contacts, and those of ends and humps of beams with sides of blocks"));
     // What moves is the beam under both.
     let lid = "[block.lid]\ndensity = '1000 kg/m^3'\nwidth = '16 cm'\nheight = '10 cm'\ndepth = '50 cm'\non = 'crate'\nat = '8 m'\n\
         [contact.lid]\nbetween = ['lid', 'crate']\nfriction = 0.4\n";

@@ -150,4 +150,31 @@ fn an_impact_at_a_kink_leaves_no_peak_in_the_force() {
     let most = forces.fold(0.0, f64::max);
     // The block weighs 159 N, and no step without an impact has more than 102 N at a corner; with the impulse beside the impact it was 117 N.
     assert!((80.0..105.0).contains(&most), "{most}");
+    // The slip of a point goes on where it comes to another piece of the ground.
+    let table = std::fs::read_to_string(run.folder.join("contacts.csv")).unwrap();
+    let mut slips = std::collections::BTreeMap::<&str, (f64, f64)>::new();
+    for row in table.lines().skip(1).map(|row| row.split(',').collect::<Vec<_>>()) {
+        let slip: f64 = row.last().unwrap().parse().unwrap();
+        let (last, most) = slips.entry(row[4]).or_insert((slip, slip));
+        assert!((slip - *last).abs() < 0.01, "{row:?} after {last}");
+        (*last, *most) = (slip, most.max(slip));
+    }
+    let of = &run.summary.verdict[0];
+    let (slid, farthest) = (of.slid.unwrap(), of.farthest.unwrap());
+    assert!(slips.len() >= 2);
+    // It rocks a little as it goes, so that one foot slips farther than the other.
+    for (point, (last, most)) in slips {
+        let of_sums = [last / slid, most / farthest];
+        assert!(
+            of_sums.iter().all(|part| (part - 1.0).abs() < 0.03),
+            "{point}: {last} of {slid}, {most} of {farthest}"
+        );
+    }
+}
+
+/// Landings on springs are counted alike.
+#[test]
+fn impacts_on_springs_are_said_to_be_counted_by_corners() {
+    let told = summary("told-springs", &scenario("compliant-drop"), &[]);
+    assert_eq!((told.impact_count > 0, told.strikers()), (true, " (each corner counts)"));
 }

@@ -106,6 +106,18 @@ fn a_disc_that_rolls_is_told_to_have_rolled() {
     // What turns backwards as it goes doesn't roll.
     let slides = rolling("50 ms", 0.01, 400.0);
     assert_eq!(slides, "`b` is still sliding");
+    // In a valley from side to side.
+    let text = format!(
+        "[time]\nend = '8 s'\nstep = '1 ms'\n[ground.profile]\npoints = [['-2 m', '0.6 m'], ['0 m', '0 m'], ['1 m', '0 m'], ['3 m', '0.6 m']]\n\
+         [block.b]\ndensity = '800 kg/m^3'\nradius = '10 cm'\ndepth = '10 cm'\non = 'ground'\nat = '-1.2 m'\n{}",
+        floor(0.3)
+    );
+    let to_and_fro = run("rolled-in-a-valley", &text).summary.headline;
+    let (in_all, at) =
+        to_and_fro.strip_prefix("`b` is still rolling to and fro, ").unwrap().split_once(" m in all, by ").unwrap();
+    let (at, _) = at.split_once(" m to the right (").unwrap();
+    let [in_all, at] = [in_all, at].map(|of| of.parse::<f64>().unwrap());
+    assert!(in_all > 2.0 * at && to_and_fro.ends_with(" turns) so far"), "{to_and_fro}");
 }
 
 #[test]

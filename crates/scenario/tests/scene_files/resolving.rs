@@ -175,6 +175,11 @@ fn the_critical_angle_is_that_of_the_side_on_which_a_block_lies() {
         let [found] = &warnings(angle)[..] else { panic!("{angle}") };
         says(found, &["block.b.angle", named, "overturns"]);
     }
+    // What is thrown isn't released at rest.
+    for key in ["spin = '4 rad/s'", "velocity = ['0.8 m/s', '0 m/s']"] {
+        let thrown = format!("14 deg'\n{key} # '");
+        assert!(warnings(&thrown).is_empty(), "{key}: {:?}", warnings(&thrown));
+    }
     // A wide one on its narrow side.
     let text = "[time]\nend = '1 s'\nstep = '1 ms'\n[ground]\n[material.a]\ndensity = '2700 kg/m^3'\n[block.b]\nmaterial = 'a'\n\
          width = '13 cm'\nheight = '3 cm'\ndepth = '3 cm'\nposition = ['0 m', '20 cm']\nangle = '70 deg'\n\

@@ -63,7 +63,8 @@ pub(super) fn model(summary: &Summary) -> String {
     row("Beams", &list(&beams));
     row("Ground", if model.ground { "rigid" } else { "none" });
     let plural = if model.possible_contacts == 1 { "" } else { "s" };
-    row("Contacts", &format!("{}; {} possible contact{plural}", list(&model.contacts), model.possible_contacts));
+    let sides = if model.has_sides { ", and those of ends and humps of beams with sides of blocks" } else { "" };
+    row("Contacts", &format!("{}; {} possible contact{plural}{sides}", list(&model.contacts), model.possible_contacts));
     if !model.loads.is_empty() {
         row("Loads", &model.loads.iter().map(|text| escaped(text)).collect::<Vec<_>>().join("<br>"));
     }

@@ -139,12 +139,16 @@ pub(super) fn rocking(
     } else {
         ""
     });
-    let on_blocks = cycles.iter().filter_map(number).any(|number| scenery.touches_blocks(number));
-    html.push_str(if on_blocks {
-        "Of a block that stands on another one, φ, ω⁻ and ω⁺ are relative to that one, which the impact moves, too: their ratio is not one of \
-         the block alone. "
-    } else {
-        ""
+    let is_on_block = |cycle: &HalfCycle| number(cycle).is_some_and(|block| scenery.is_on_block(block));
+    let touch_blocks = cycles.iter().filter_map(number).any(|number| scenery.touches_blocks(number));
+    let on_blocks = cycles.iter().any(is_on_block);
+    html.push_str(match cycles.iter().any(|cycle| is_on_block(cycle) && cycle.omega.is_some()) {
+        true => {
+            "Of a block that stands on another one, φ, ω⁻ and ω⁺ are relative to that one, which the impact moves, too: their ratio is not one of \
+             the block alone. "
+        }
+        false if on_blocks => "Of a block that stands on another one, φ is relative to that one. ",
+        false => "",
     });
     let on_beams = cycles.iter().any(is_on_beam);
     html.push_str(if lifts {
@@ -192,7 +196,7 @@ pub(super) fn rocking(
          before and after one of them don’t tell what is lost. The decay of the {what} does, but for loads that act meanwhile and what a beam that vibrates gives back."
         );
     }
-    html.push_str(if on_blocks || on_beams {
+    html.push_str(if touch_blocks || on_beams {
         ""
     } else if hits && !scenery.driven.is_empty() {
         "A base that gives way spreads the loss over the half cycle: the ratio is then nearer to 1."
