@@ -100,8 +100,9 @@ pub struct SurfacePoint<const D: usize> {
 pub struct Summit<const D: usize> {
     /// The point.
     pub point: SurfacePoint<D>,
-    /// Whether it is one because the surface is supported there: it bears even where the surface doesn't come out.
-    pub supported: bool,
+    /// Where it is one because the surface is supported there, and bears even where it doesn't come out: within this distance (m) of it, a summit
+    /// at which the surface does come out takes its place.
+    pub support: Option<f64>,
 }
 
 /// The points x with n·x ≤ offset.
@@ -161,8 +162,8 @@ pub trait Geometry<const D: usize> {
     }
     /// Hands the points of the body's surface to `each`, from the left, at which it comes out
     /// furthest in a direction, more so than beside them, and whose feet lie between those of two
-    /// places: the humps of a beam under a base. Where it is supported from below it may bear without coming out, so these points belong to them, too,
-    /// but for those beside which it does come out. None, the default, for a surface that is flat and has no supports.
+    /// places: the humps of a beam under a base. The points over its supports belong to them, too, as a surface bears there without
+    /// coming out. None, the default, for a surface that is flat and has no supports.
     fn summits(
         &self,
         body: BodyId,

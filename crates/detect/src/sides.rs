@@ -70,6 +70,9 @@ impl OnSide {
 /// stand on both sides of it.
 const FLAT: f64 = 1e-9;
 
+/// A support within this part of the side's length of an end of it is under the corner there, which touches it.
+const UNDER_A_CORNER: f64 = 1e-6;
+
 /// A side whose normal has more than this of the surface's does not lie over it but stands beside
 /// it.
 const FACING: f64 = -0.25;
@@ -201,9 +204,23 @@ fn end_at_rounding(
     Some(Touch { feature, points, normal, gap, room: f64::INFINITY })
 }
 
+/// Where a surface may bear a side between its ends.
+#[derive(Clone, Copy)]
+struct Bearing {
+    point: SurfacePoint<2>,
+    /// How far along the side, as a part of its length.
+    along: f64,
+    /// Along the direction in which the surface comes out, m.
+    height: f64,
+    /// As [`Summit::support`], as a part of the side's length.
+    support: Option<f64>,
+}
+
 /// Where a surface comes out or is supported between the ends of a side, from the left.
 struct Summits {
-    points: [Option<SurfacePoint<2>>; MOST_SUMMITS],
+    /// The last place is for one too many.
+    places: [Option<Bearing>; MOST_SUMMITS + 1],
+    count: usize,
 }
 
 impl Summits {
@@ -213,31 +230,73 @@ impl Summits {
         let length = along_side.norm();
         // How far the surface comes out beside the ends of the side; found once it is asked for.
         let mut chord = None;
-        let mut points = [None; MOST_SUMMITS];
-        let mut count = 0;
-        at.summits(pair.surface, pair.kinematics, &direction, &side.ends, &mut |Summit { point, supported }| {
-            let x = (point.place - side.ends[0]).dot(&along_side) / (length * length);
-            let chord = *chord.get_or_insert_with(|| {
-                let feet = side.ends.map(|end| at.surface(pair.surface, pair.kinematics, &end));
-                feet.map(|foot| foot.map(|foot| direction.dot(&foot.place)))
-            });
-            let beside = match chord {
-                [Some(a), Some(b)] => a + (b - a) * x,
-                // Past its end there is nothing beside it.
-                [Some(one), None] | [None, Some(one)] => one,
-                [None, None] => f64::NEG_INFINITY,
+        let mut summits = Self { places: [None; MOST_SUMMITS + 1], count: 0 };
+        at.summits(pair.surface, pair.kinematics, &direction, &side.ends, &mut |Summit { point, support }| {
+            let along = (point.place - side.ends[0]).dot(&along_side) / (length * length);
+            let height = direction.dot(&point.place);
+            let bears = if support.is_some() {
+                along.min(1.0 - along) > UNDER_A_CORNER
+            } else {
+                let chord = *chord.get_or_insert_with(|| {
+                    let feet = side.ends.map(|end| at.surface(pair.surface, pair.kinematics, &end));
+                    feet.map(|foot| foot.map(|foot| direction.dot(&foot.place)))
+                });
+                let beside = match chord {
+                    [Some(a), Some(b)] => a + (b - a) * along,
+                    // Past its end there is nothing beside it.
+                    [Some(one), None] | [None, Some(one)] => one,
+                    [None, None] => f64::NEG_INFINITY,
+                };
+                height - beside > FLAT * length && (0.0..=1.0).contains(&along)
             };
-            let bears = supported || direction.dot(&point.place) - beside > FLAT * length;
-            if count < MOST_SUMMITS && bears && (0.0..=1.0).contains(&x) {
-                points[count] = Some(point);
-                count += 1;
+            if bears {
+                let reach = support.map(|reach| reach / length);
+                summits.add(Bearing { point, along, height, support: reach }, FLAT * length);
             }
         });
-        Self { points }
+        summits
+    }
+
+    /// Adds the next one to the right. A summit takes the place of a support that it is near to. Of too many the lowest
+    /// goes; of those that are as low but for `flat` (m), the one in the middle, as a base that is level rests on the outer ones.
+    fn add(&mut self, bearing: Bearing, flat: f64) {
+        let is_near = |a: &Bearing, reach: f64| (a.along - bearing.along).abs() <= reach;
+        match bearing.support {
+            Some(reach) if self.bearings().any(|summit| summit.support.is_none() && is_near(summit, reach)) => return,
+            Some(_) => {}
+            None => {
+                let replaced = |support: &Bearing| support.support.is_some_and(|reach| is_near(support, reach));
+                let find = |of: &Self| of.bearings().position(replaced);
+                while let Some(k) = find(self) {
+                    self.remove(k);
+                }
+            }
+        }
+        self.places[self.count] = Some(bearing);
+        self.count += 1;
+        if self.count > MOST_SUMMITS {
+            let lowest = self.bearings().map(|bearing| bearing.height).fold(f64::INFINITY, f64::min);
+            let low = self.bearings().enumerate().filter(|(_, bearing)| bearing.height <= lowest + flat);
+            let last = self.count - 1;
+            let innermost = low.map(|(k, _)| k).max_by_key(|&k| k.min(last - k));
+            if let Some(k) = innermost {
+                self.remove(k);
+            }
+        }
+    }
+
+    fn remove(&mut self, k: usize) {
+        self.places.copy_within(k + 1..self.count, k);
+        self.count -= 1;
+        self.places[self.count] = None;
+    }
+
+    fn bearings(&self) -> impl Iterator<Item = &Bearing> {
+        self.places.iter().flatten()
     }
 
     fn iter(&self) -> impl Iterator<Item = &SurfacePoint<2>> {
-        self.points.iter().flatten()
+        self.bearings().map(|bearing| &bearing.point)
     }
 }
 

@@ -64,7 +64,7 @@ impl Geometry<2> for Wave {
                     let middle = 0.5 * (a + b);
                     if rises(middle) > 0.0 { a = middle } else { b = middle }
                 }
-                each(Summit { point: self.at(a), supported: false });
+                each(Summit { point: self.at(a), support: None });
             }
         }
     }

@@ -215,8 +215,7 @@ pub fn settle<const D: usize>(
         }
         let last = stalled >= STALLED || round == ROUNDS;
         // A summit that was just found isn't held yet.
-        let holds = same || round == ROUNDS;
-        if holds && (change <= ROUNDING || (last && change <= SETTLED)) {
+        if same && (change <= ROUNDING || (last && change <= SETTLED)) {
             let named = |contact: &Contact<D>| Some((search.summits.identity(contact.id)?, contact.p / tau));
             let mut forces: Vec<_> = pressing().filter_map(named).collect();
             forces.sort_by_key(|(id, _)| *id);

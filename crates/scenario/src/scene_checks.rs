@@ -240,13 +240,16 @@ fn without_effect(force: &ForceScene, scene: &Scene, document: &Document) -> Opt
 /// Warns of a block tilted so far that it may overturn.
 fn tilt(block: &BlockScene, incline: f64, touches: bool, document: &Document) -> Option<Diagnostic> {
     let table = table_of(document, &block.name);
+    // What is thrown or spins isn't released at rest.
+    if block.velocity != [0.0; 2] || block.spin != 0.0 {
+        return None;
+    }
     let (key, angle, [flat, alpha]) = match block.placement {
         Placement::On { tilt, .. } => ("tilt", incline + tilt, [0.0, block.critical_angle()?]),
         Placement::Free { angle, .. } => {
             let [flat, alpha] = block.flat_near(angle)?;
-            // In flight any angle is fine, and so is one at random. What is thrown isn't released at rest.
-            let is_at_rest = block.velocity == [0.0; 2] && block.spin == 0.0;
-            let is_told = touches && is_at_rest && document.is_given(&format!("block.{table}.angle"));
+            // In flight any angle is fine, and so is one at random.
+            let is_told = touches && document.is_given(&format!("block.{table}.angle"));
             if !is_told || (angle - flat).abs() < alpha {
                 return None;
             }

@@ -70,6 +70,8 @@ fn rotation<const D: usize>(model: &Model<D>, q: &[f64], body: BodyId) -> Frame<
 #[derive(Debug, Default)]
 pub(super) struct Summits<const D: usize> {
     known: Vec<Summit<D>>,
+    /// The first one of each base: its pair, its body, its identity.
+    firsts: Vec<(u32, BodyId, ContactId)>,
     /// How many were ever found, and how many of these deep inside their base.
     count: u32,
     deep: u32,
@@ -98,7 +100,9 @@ impl<const D: usize> Summits<D> {
             let apart = |other: &Candidate<D>| (other.sides[0].point - candidate.sides[0].point).norm();
             // Corners are of another pair.
             let of_base = |other: &&Candidate<D>| other.sides[0].body == candidate.sides[0].body;
-            let length = candidates.iter().filter(of_base).map(apart).fold(0.0, f64::max);
+            let beside = candidates.iter().filter(of_base).map(apart).fold(0.0, f64::max);
+            // Its corners may be further away than candidates are looked for.
+            let length = if beside > 0.0 { beside } else { candidate.sides[0].point.norm() };
             let is_same = |summit: &&mut Summit<D>| {
                 let known = &summit.candidate;
                 let of_pair = known.id.pair() == candidate.id.pair() && of_base(&known);
@@ -110,9 +114,12 @@ impl<const D: usize> Summits<D> {
                 let id = ContactId::new(candidate.id.pair(), u32::MAX - self.count);
                 self.count += 1;
                 self.deep += u32::from(candidate.gap < -DEEP * length);
-                let is_first =
-                    |known: &&Summit<D>| known.candidate.id.pair() == candidate.id.pair() && of_base(&&known.candidate);
-                let first = self.known.iter().find(is_first).map_or(id, |known| known.first);
+                let (pair, body) = (candidate.id.pair(), candidate.sides[0].body);
+                let known = self.firsts.iter().find(|(of, base, _)| (*of, *base) == (pair, body));
+                let first = known.map_or(id, |(_, _, first)| *first);
+                if first == id {
+                    self.firsts.push((pair, body, id));
+                }
                 self.known.push(Summit::found(model, q, candidate, [id, first]));
             }
         }

@@ -32,6 +32,7 @@ mod settings;
 mod shapes;
 mod sides;
 mod stacks;
+mod supports;
 #[cfg(feature = "parallel")]
 mod threads;
 mod together;

@@ -23,7 +23,7 @@ fn scene(end: &str, more: &str) -> String {
     )
 }
 
-fn simulation(text: &str, sets: &[(&str, &str)]) -> Simulation {
+pub(super) fn simulation(text: &str, sets: &[(&str, &str)]) -> Simulation {
     let resolved = load(text.as_bytes(), "scene", "scene", &super::sets(sets));
     Simulation::new(&resolved.unwrap_or_else(|errors| panic!("{errors}\n{text}")).scene).unwrap()
 }
@@ -31,9 +31,9 @@ fn simulation(text: &str, sets: &[(&str, &str)]) -> Simulation {
 /// The forces of the last step on the first side, by the name of the contact and of the point, x
 /// and y, N.
 #[derive(Default)]
-struct Forces {
+pub(super) struct Forces {
     names: Vec<(String, Vec<String>)>,
-    on: BTreeMap<String, [f64; 2]>,
+    pub(super) on: BTreeMap<String, [f64; 2]>,
     /// The points that ever touched.
     ever: Vec<String>,
 }
@@ -75,7 +75,7 @@ impl Observer<2> for OfScene {
     }
 }
 
-fn forces(simulation: &mut Simulation) -> Forces {
+pub(super) fn forces(simulation: &mut Simulation) -> Forces {
     let mut observer = OfScene(Forces::default(), simulation.layout.clone());
     let ended = simulation.run(&mut [&mut observer]).unwrap();
     assert_eq!(ended, Ended::Complete);
@@ -167,6 +167,7 @@ fn a_block_on_a_hump_stays_as_it_was_put() {
         ("moreau-jean-closed", "48 cm", "100 us", false, 5e-8),
         ("moreau-jean-closed", "46 cm", "200 us", false, 1e-8),
         ("moreau-jean-projected", "48 cm", "200 us", false, 5e-8),
+        ("moreau-jean-located", "48.5 cm", "200 us", false, 5e-8),
         ("moreau-jean-located", "49 cm", "200 us", false, 5e-8),
         ("moreau-jean-located", "50 cm", "200 us", false, 1e-12),
         ("moreau-jean-located", "42 cm", "200 us", true, 5e-8),
@@ -223,35 +224,6 @@ fn a_small_block_beside_a_support_stays_as_it_was_put() {
         let deepest = simulation.state.tally.max_penetration;
         assert!(sunk < 5.0 * most && deepest < most, "{at} {step}: {sunk:e} m, {deepest:e} m");
         assert!(turned < 1e-6, "{at} {step}: {turned:e}");
-    }
-}
-
-#[test]
-fn a_plank_rests_on_two_piers_of_a_strip_that_is_straight_over_them() {
-    // The strip has no weight of its own: it doesn't come out over its piers before it is pressed beside them.
-    let text = "[time]\nend = '0.1 s'\nstep = '200 us'\nscheme = 'moreau-jean-closed'\n\
-         [material.a]\ndensity = '2700 kg/m^3'\nyoungs_modulus = '69 GPa'\n[material.s]\ndensity = '7850 kg/m^3'\n\
-         [beam.strip]\nmaterial = 'a'\nspan = '80 cm'\nwidth = '3 cm'\nthickness = '3 mm'\nelements = 24\nstart = 'static'\n\
-         [beam.strip.support.one]\nat = '30 cm'\ndeflection = 'fixed'\n[beam.strip.support.two]\nat = '50 cm'\ndeflection = 'fixed'\n\
-         [block.p]\nmaterial = 's'\nwidth = '28 cm'\nheight = '1 cm'\ndepth = '3 cm'\non = 'strip'\nat = '41 cm'\n\
-         [contact.c]\nbetween = ['p', 'strip']\nfriction = 0.5\n";
-    let weight = 7850.0 * 0.28 * 0.01 * 0.03 * G;
-    for (scheme, start) in
-        [("closed", "static"), ("closed", "undeformed"), ("projected", "static"), ("located", "undeformed")]
-    {
-        let scheme = format!("'moreau-jean-{scheme}'");
-        let start = format!("'{start}'");
-        let mut simulation = simulation(text, &[("time.scheme", &scheme), ("beam.strip.start", &start)]);
-        let block = simulation.layout.blocks[0].range.clone();
-        let put = simulation.state.q[block.clone()].to_vec();
-        let found = forces(&mut simulation);
-        // By levers: 9 cm to the right of 41 cm, 11 cm to its left.
-        for (name, part) in [("c hump-1", 0.45), ("c hump-2", 0.55)] {
-            let force = found.on[name][1];
-            assert!((force / (part * weight) - 1.0).abs() < 1e-8, "{scheme} {start}: {name} {force} of {weight} N");
-        }
-        let moved = put.iter().zip(&simulation.state.q[block]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(moved < 1e-12, "{scheme} {start}: {moved:e}");
     }
 }
 

@@ -136,8 +136,8 @@ impl Line {
     /// Hands the points at which the surface comes out furthest along `direction`, between two
     /// places, to `each`, from the left. The surface runs parallel to the axis, so that they belong
     /// to the sections at which the axis is at right angles to the direction; in an element the
-    /// slope is a parabola. A support that has none in the elements beside it is handed over, too: a beam that is straight over it doesn't
-    /// come out, but it bears there, and can't give way as it does beside it.
+    /// slope is a parabola. Supports are handed over, too: a beam that is straight over one doesn't come out, but bears there, and
+    /// can't give way as it does beside it.
     pub(crate) fn summits(
         &self,
         beam: &impl Deflecting,
@@ -161,7 +161,7 @@ impl Line {
         let supports = beam.inner_supports().iter().filter(|inner| inner.support.holds()[0] != Hold::Free);
         let is_supported = |x: f64| supports.clone().any(|inner| (inner.x - x).abs() <= SAME_PLACE * beam.span());
         let mut left = None;
-        let mut fell = false;
+        let mut before = 0.0_f64;
         for two in nodes[first - 1..].windows(2).take_while(|two| two[0] < high) {
             let (from, to) = (two[0].max(low), two[1].min(high));
             // The slope of a beam that shears jumps at a node under a force or a mass: an element has the slopes within it.
@@ -171,14 +171,15 @@ impl Line {
             let kink = (start <= 0.0 && left.is_some_and(|left| left > 0.0)).then_some(from);
             let fall = falls_through_zero([start, middle, end]).map(|t| begin + t * length);
             left = Some(end);
-            let is_bent = [start, middle, end].iter().any(|rise| rise.abs() > STRAIGHT);
-            let falls = is_bent && fall.is_some();
             let node = two[0];
-            let bears = node > low && kink.is_none() && !(fell || falls) && is_supported(node);
-            fell = falls;
-            for (x, supported) in [(bears.then_some(node), true), (kink, false), (fall, false)] {
+            // In an element beside it, a summit is that of the beam bent over the support.
+            let beside = before.max(two[1] - node);
+            before = two[1] - node;
+            let held = (node > low && is_supported(node)).then_some(beside);
+            let support = held.and(kink.is_none().then_some(node));
+            for (x, support) in [(support, held), (kink, held), (fall, None)] {
                 if let Some(point) = x.and_then(|x| self.at(beam, q, x)) {
-                    each(Summit { point, supported });
+                    each(Summit { point, support });
                 }
             }
         }
@@ -213,9 +214,6 @@ fn normal_of(slope: f64) -> Vector2<f64> {
 
 /// Slopes at a node are taken this part of an element beside it.
 const EDGE: f64 = 1e-9;
-
-/// An element that rises and falls by no more than this against a side is straight but for rounding.
-const STRAIGHT: f64 = 1e-9;
 
 /// A node is at a support if they are no further apart than this part of the span.
 const SAME_PLACE: f64 = 1e-9;

@@ -187,9 +187,9 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary) -> String {
                 None => continue,
             },
             "overturned_at" => (overturned.as_str(), seconds(summary.overturned_at)),
-            "rests_from" if summary.rests_from == Some(0.0) => ("All at rest", Some("throughout".to_owned())),
             // What stood on a beam throughout moves as long as that does, also where it is still against it.
             "rests_from" if summary.verdict.iter().any(BodyVerdict::moves_with_beam) => continue,
+            "rests_from" if summary.rests_from == Some(0.0) => ("All at rest", Some("throughout".to_owned())),
             "rests_from" => ("All at rest from", seconds(summary.rests_from)),
             "energy.dissipated" => ("Energy dissipated", Some(lost(summary.energy.dissipated, summary))),
             "energy.lost_by_scheme" => {
