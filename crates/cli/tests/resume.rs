@@ -198,7 +198,7 @@ fn killed_after(mut child: Child, time: Duration) {
     let _ = child.wait();
 }
 
-/// Each scene killed at four random moments. Two tests share them, as all others are done long before.
+/// Each scene killed at four random moments. The scenes are shared between two tests, which run at once: one alone would go on after all others of this file are done.
 fn killed_at_random_moments(scenes: &[&[&str]], test: &str, seed: u64) {
     let mut random = Random(seed);
     for (number, scene) in scenes.iter().enumerate() {
