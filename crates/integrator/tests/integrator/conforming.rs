@@ -170,7 +170,7 @@ fn summits_of_a_beam_are_where_a_fine_search_finds_them() {
     }
 }
 
-/// A straight beam comes out nowhere, but bears at a support between its ends; one that is bent there also at the crest beside it.
+/// A straight beam comes out nowhere, but bears at a support between its ends; one that is bent there at the crest beside it.
 #[test]
 fn a_beam_bears_at_its_supports_and_where_it_comes_out() {
     let section = Section::rectangle(0.03, 0.002, 69e9, 2700.0).unwrap();
@@ -197,8 +197,12 @@ fn a_beam_bears_at_its_supports_and_where_it_comes_out() {
     beam.add_point_load(0.3, -1.0, &mut q).unwrap();
     beam.solve_static(&mut q).unwrap();
     let crest = found(&q, 0.15, 0.0);
-    let [(x, supported), support] = crest[..] else { panic!("{crest:?}") };
-    assert!(!supported && (x - 0.2).abs() < 0.05 && support == (node, true), "{crest:?}");
+    let [(x, supported)] = crest[..] else { panic!("{crest:?}") };
+    assert!(!supported && (x - 0.2).abs() < 0.05, "{crest:?}");
+    // Bent by so little that a base may come down flat on it, it bears at both.
+    q.iter_mut().for_each(|q| *q *= 1e-2);
+    let both = found(&q, 0.15, 0.0);
+    assert!(both.len() == 2 && both.contains(&(node, true)), "{both:?}");
 }
 
 #[test]

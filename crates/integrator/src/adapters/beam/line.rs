@@ -136,8 +136,8 @@ impl Line {
     /// Hands the points at which the surface comes out furthest along `direction`, between two
     /// places, to `each`, from the left. The surface runs parallel to the axis, so that they belong
     /// to the sections at which the axis is at right angles to the direction; in an element the
-    /// slope is a parabola. Supports are handed over, too: a beam that is straight over one doesn't come out, but bears there, and
-    /// can't give way as it does beside it.
+    /// slope is a parabola. Supports over which the beam is nearly straight are handed over, too: it doesn't come out there, but bears, and
+    /// can't give way as it does beside them. A base that comes down on a beam that is bent more rolls onto its crest instead.
     pub(crate) fn summits(
         &self,
         beam: &impl Deflecting,
@@ -161,7 +161,8 @@ impl Line {
         let supports = beam.inner_supports().iter().filter(|inner| inner.support.holds()[0] != Hold::Free);
         let is_supported = |x: f64| supports.clone().any(|inner| (inner.x - x).abs() <= SAME_PLACE * beam.span());
         let mut left = None;
-        let mut before = 0.0_f64;
+        // The length of the element before, and whether it is nearly straight.
+        let (mut before, mut was_straight) = (0.0_f64, false);
         for two in nodes[first - 1..].windows(2).take_while(|two| two[0] < high) {
             let (from, to) = (two[0].max(low), two[1].min(high));
             // The slope of a beam that shears jumps at a node under a force or a mass: an element has the slopes within it.
@@ -174,8 +175,9 @@ impl Line {
             let node = two[0];
             // In an element beside it, a summit is that of the beam bent over the support.
             let beside = before.max(two[1] - node);
-            before = two[1] - node;
-            let held = (node > low && is_supported(node)).then_some(beside);
+            let is_straight = start.max(middle).max(end) - start.min(middle).min(end) <= STRAIGHT;
+            let held = (was_straight && is_straight && is_supported(node)).then_some(beside);
+            (before, was_straight) = (two[1] - node, is_straight);
             let support = held.and(kink.is_none().then_some(node));
             for (x, support) in [(support, held), (kink, held), (fall, None)] {
                 if let Some(point) = x.and_then(|x| self.at(beam, q, x)) {
@@ -214,6 +216,10 @@ fn normal_of(slope: f64) -> Vector2<f64> {
 
 /// Slopes at a node are taken this part of an element beside it.
 const EDGE: f64 = 1e-9;
+
+/// An element is nearly straight if its slope changes by no more than this, rad: as much as a base turns in a step or less, so that it may
+/// come down flat on what is bent by less, without ever rolling onto it.
+const STRAIGHT: f64 = 1e-4;
 
 /// A node is at a support if they are no further apart than this part of the span.
 const SAME_PLACE: f64 = 1e-9;
