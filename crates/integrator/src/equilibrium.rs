@@ -193,12 +193,12 @@ pub fn settle<const D: usize>(
     for round in 1..=ROUNDS {
         search.round(model, t, tau, limits, work, round)?;
         let Step { size, change, inertia, short } = search.step(model);
-        // A summit that was found in this round or the last one moves what bears: steps grow with any tangent, and are mostly inertia.
         search.summits.forget(search.stage.contacts());
         let deep = search.summits.deep();
-        let same = deep_before == [deep; 2];
+        let none_new = deep_before == [deep; 2];
         deep_before = [deep, deep_before[0]];
-        if !first && same && size > (GROWS * size_before).max(SETTLED) && inertia < 0.5 {
+        // A summit that was found in this round or the last one moves what bears: steps grow with any tangent, and are mostly inertia.
+        if !first && none_new && size > (GROWS * size_before).max(SETTLED) && inertia < 0.5 {
             // The tangent was too soft: go back, and take a shorter τ.
             search.go_back();
             tau *= 0.25;
@@ -215,7 +215,7 @@ pub fn settle<const D: usize>(
         }
         let last = stalled >= STALLED || round == ROUNDS;
         // A summit that was just found isn't held yet.
-        if same && (change <= ROUNDING || (last && change <= SETTLED)) {
+        if none_new && (change <= ROUNDING || (last && change <= SETTLED)) {
             let named = |contact: &Contact<D>| Some((search.summits.identity(contact.id)?, contact.p / tau));
             let mut forces: Vec<_> = pressing().filter_map(named).collect();
             forces.sort_by_key(|(id, _)| *id);
@@ -238,7 +238,7 @@ pub fn settle<const D: usize>(
         if stalled >= CIRCLES {
             longest = 0.25 * tau;
         }
-        let grows = !first && (short || (same && inertia > INERT && change > SETTLED));
+        let grows = !first && (short || (none_new && inertia > INERT && change > SETTLED));
         let next = if grows { GROWTH * tau } else { tau }.min(longest);
         search.warm.clear();
         for contact in search.stage.contacts() {

@@ -272,13 +272,13 @@ fn rolled(scene: &Scene, of: &BodyVerdict, [at, in_all]: [f64; 2]) -> String {
 
 /// How a block slid to both sides of its start (m) and where it is by that, in words.
 fn to_both_sides(scene: &Scene, of: &BodyVerdict, reached: [f64; 2], slid: f64) -> String {
-    let in_the_end = match () {
-        // Hops and flights took it elsewhere.
-        () if of.elsewhere.is_some() => String::new(),
-        () if is_told(scene, of, slid) => {
-            format!(", in the end {} {} it", with_unit(slid.abs(), "m"), direction(scene, slid).side)
-        }
-        () => ", in the end back at its start".to_owned(),
+    let in_the_end = if of.elsewhere.is_some() {
+        // Hops and flights took it there.
+        String::new()
+    } else if is_told(scene, of, slid) {
+        format!(", in the end {} {} it", with_unit(slid.abs(), "m"), direction(scene, slid).side)
+    } else {
+        ", in the end back at its start".to_owned()
     };
     format!("slid{TO_AND_FRO}, {}{in_the_end}", up_to(scene, of, reached))
 }

@@ -161,8 +161,8 @@ impl Line {
         let supports = beam.inner_supports().iter().filter(|inner| inner.support.holds()[0] != Hold::Free);
         let is_supported = |x: f64| supports.clone().any(|inner| (inner.x - x).abs() <= SAME_PLACE * beam.span());
         let mut left = None;
-        // The length of the element before, and whether it is nearly straight.
-        let (mut before, mut was_straight) = (0.0_f64, false);
+        // Length of the element before, and whether it is nearly straight.
+        let (mut length_before, mut was_straight) = (0.0_f64, false);
         for two in nodes[first - 1..].windows(2).take_while(|two| two[0] < high) {
             let (from, to) = (two[0].max(low), two[1].min(high));
             // The slope of a beam that shears jumps at a node under a force or a mass: an element has the slopes within it.
@@ -173,11 +173,11 @@ impl Line {
             let fall = falls_through_zero([start, middle, end]).map(|t| begin + t * length);
             left = Some(end);
             let node = two[0];
-            // In an element beside it, a summit is that of the beam bent over the support.
-            let beside = before.max(two[1] - node);
+            let element = two[1] - node;
             let is_straight = start.max(middle).max(end) - start.min(middle).min(end) <= STRAIGHT;
-            let held = (was_straight && is_straight && is_supported(node)).then_some(beside);
-            (before, was_straight) = (two[1] - node, is_straight);
+            // In an element beside it, a summit is that of the beam bent over the support.
+            let held = (was_straight && is_straight && is_supported(node)).then_some(length_before.max(element));
+            (length_before, was_straight) = (element, is_straight);
             let support = held.and(kink.is_none().then_some(node));
             for (x, support) in [(support, held), (kink, held), (fall, None)] {
                 if let Some(point) = x.and_then(|x| self.at(beam, q, x)) {
