@@ -51,7 +51,7 @@ impl Places {
                 largest.push(LargestDeflection { beam: beam.name.clone(), w: 0.0, x: 0.0, t: state.t });
             }
             for (x, shape) in places {
-                let w = beam.deflection(shape, &state.q).w;
+                let w = beam.deflection(shape, &state.q[beam.range.clone()]).w;
                 let of = &mut largest[number];
                 let mut most = of.w.abs();
                 if first::enter(w.abs(), &mut most, &mut first[number]) {

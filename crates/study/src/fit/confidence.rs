@@ -1,9 +1,9 @@
 //! How well the fitted values are known, and which of them trade off.
 
 use super::beside::{self, Fitted};
+use super::least_squares::{Point, levenberg_marquardt, nelder_mead};
 use super::objective::{Objective, Trial};
-use super::{Evaluation, matrix};
-use crate::axes::in_seconds;
+use super::{Evaluation, SIMPLEX, matrix};
 use crate::measured::Channel;
 
 /// The confidence in a fitted value.
@@ -25,7 +25,7 @@ pub struct Estimate {
     /// The least and the largest value that were found to fit as well, if they go beyond what the standard
     /// error says; `None` for what isn't a key.
     pub as_good: Option<(f64, f64)>,
-    /// By how much half the time step would change the value, to first order: an error that the interval doesn't hold.
+    /// By how much half the time step changes the value: an error that the interval doesn't hold.
     pub with_half_step: f64,
     /// The bounds of its range; `None` for what isn't a key.
     pub bounds: Option<(f64, f64)>,
@@ -171,11 +171,6 @@ pub(super) fn of(
     let covariance = inverse_of(&columns, &known);
     let variance_of = |k: usize| covariance.as_ref().map(|found| found[k][k]).filter(|found| *found > 0.0);
     let error = |k: usize| variance_of(k).map_or(f64::INFINITY, |found| (variance * found).sqrt());
-    let of_step = of_half_step(objective, fitted);
-    let of_step = |k: usize| match (&covariance, &of_step) {
-        (Some(inverse), Some(change)) => shift_of(&columns, &inverse[k], change),
-        _ => 0.0,
-    };
     let correlation: Vec<Vec<f64>> = (0..count)
         .map(|i| {
             let one = |j: usize| match (&covariance, variance_of(i), variance_of(j)) {
@@ -238,7 +233,7 @@ pub(super) fn of(
             },
             bounds: keys.get(k).map(super::FitKey::bounds),
             as_good: as_good.get(k).copied().flatten(),
-            with_half_step: slope * of_step(k),
+            with_half_step: 0.0,
         })
         .collect();
     Some(Confidence {
@@ -256,19 +251,34 @@ pub(super) fn correlated(rho: f64) -> f64 {
     if rho > 0.0 { (1.0 + rho) / (1.0 - rho).max(1e-3) } else { 1.0 }
 }
 
-/// What half the time step changes of the residuals, with the same values; none if that has no motion.
-fn of_half_step(objective: &Objective<'_>, fitted: &Trial) -> Option<Vec<f64>> {
-    let setting = objective.setting(&fitted.at);
-    let step = objective.source.scene(&setting).ok()?.time.step;
-    let finer = objective.trace(&setting.set("time.step", in_seconds(0.5 * step))).ok()?;
-    let [own, finer] = [&fitted.trace, &finer].map(|trace| objective.fixed(trace, fitted.shift, fitted.shift));
-    (own.len() == finer.len()).then(|| finer.iter().zip(&own).map(|(b, a)| b - a).collect())
+impl Confidence {
+    /// Enters what half the time step changes: the fit with it, from the values found. Not to first order: a step shifts each
+    /// impact by a part of itself, which the fitted values make up for, and such a function has no slope.
+    pub(super) fn with_half_step(mut self, objective: &Objective<'_>, fitted: &Trial, reach: f64) -> Self {
+        let Some(finer) = refitted(objective, fitted, reach) else { return self };
+        for (k, estimate) in self.estimates.iter_mut().enumerate() {
+            estimate.with_half_step = match (objective.keys.get(k), &*estimate.name) {
+                (Some(key), _) => key.at(finer.at[k]) - key.at(fitted.at[k]),
+                (None, "time shift") => finer.shift - fitted.shift,
+                (None, "zero of the angle") => objective.sign.factor() * (finer.offset - fitted.offset),
+                (None, _) => 0.0,
+            };
+        }
+        self
+    }
 }
 
-/// The change of an unknown with the residuals, by least squares: `inverse` is its row of (JᵀJ)⁻¹.
-fn shift_of(columns: &[Vec<f64>], inverse: &[f64], change: &[f64]) -> f64 {
-    let product = |column: &[f64]| column.iter().zip(change).map(|(a, b)| a * b).sum::<f64>();
-    -columns.iter().zip(inverse).filter(|(_, of)| **of != 0.0).map(|(column, of)| of * product(column)).sum::<f64>()
+/// The fit with half the time step, from the values found; none if that has no motion.
+fn refitted(objective: &Objective<'_>, fitted: &Trial, reach: f64) -> Option<Trial> {
+    let step = objective.source.scene(&objective.setting(&fitted.at)).ok()?.time.step;
+    let finer = Objective { step: Some(0.5 * step), ..objective.clone() };
+    let evaluate = |at: &[f64], kept: &Trial| {
+        let trial = finer.trial(at, kept.shift).ok().filter(|trial| trial.cost.is_finite())?;
+        Some(Point { at: trial.at.clone(), residuals: trial.residuals.clone(), cost: trial.cost, kept: trial })
+    };
+    let start = evaluate(&fitted.at, fitted)?;
+    let simplex = nelder_mead(start, SIMPLEX * reach, 30 * objective.keys.len(), &mut &evaluate);
+    Some(levenberg_marquardt(simplex, reach, &mut &evaluate).kept)
 }
 
 fn norm(column: &[f64]) -> f64 {
@@ -392,16 +402,6 @@ mod tests {
             tried("beside", Some(1.0), 1.03),
         ];
         assert_eq!(tried_that_fit(&all, 1.0, 1.05), [vec![1.01], vec![1.03]]);
-    }
-
-    #[test]
-    fn what_a_step_changes_moves_the_values_by_least_squares() {
-        // Residuals that change as they do with the first value move it back by as much, and the other one not at all.
-        let columns = [vec![2000.0, -300.0, 50.0], vec![100.0, 400.0, -7.0]];
-        let inverse = inverse_of(&columns, &[0, 1]).unwrap();
-        let change: Vec<f64> = columns[0].iter().map(|of| 0.01 * of).collect();
-        let moved = [0, 1].map(|k| shift_of(&columns, &inverse[k], &change));
-        assert!((moved[0] + 0.01).abs() < 1e-12 && moved[1].abs() < 1e-12, "{moved:?}");
     }
 
     #[test]

@@ -340,7 +340,9 @@ fn confidence_of_best(
         let found = confidence::of(objective, &best[0], threads, evaluations);
         let better = found.as_ref().and_then(|found| found.better.as_ref()).filter(|_| moves < MOVES);
         let start = better.and_then(|at| objective.trial(at, best[0].shift).ok());
-        let Some(start) = start else { return Ok(found) };
+        let Some(start) = start else {
+            return Ok(found.map(|found| found.with_half_step(objective, &best[0], reach)));
+        };
         moves += 1;
         let mut all = improve(objective, &[start], reach, true, threads, evaluations, report)?;
         all.append(best);
@@ -396,7 +398,19 @@ fn search<'a>(
         let noise = Objective::noise_of(&motion);
         let offset = settings.offset.map(|offset| sign.factor() * offset);
         let until = resolved.scene.time.end;
-        Objective { source, keys, sign, block, motion, noise, shift: settings.alignment.shift, offset, until, cancel }
+        Objective {
+            source,
+            keys,
+            sign,
+            block,
+            motion,
+            noise,
+            shift: settings.alignment.shift,
+            offset,
+            until,
+            step: None,
+            cancel,
+        }
     };
     let signs = settings.alignment.sign.map_or(vec![Sign::AsIs, Sign::Reversed], |sign| vec![sign]);
     let objectives: Vec<Objective<'_>> = signs.into_iter().map(objective).collect();

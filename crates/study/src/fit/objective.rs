@@ -1,6 +1,7 @@
 //! The difference between a measured motion and that of a scene with trial values.
 
 use super::FitKey;
+use crate::axes::in_seconds;
 use crate::compare::{FINE, MotionTrace, Tracer, golden, mismatch_and_shift};
 use crate::measured::{Channel, MeasuredMotion, Sign, local_fit};
 use crate::{Failure, Setting, StudyScene};
@@ -13,6 +14,7 @@ const NOISE_WINDOW: usize = 7;
 const LEAST_NOISE: f64 = 1e-6;
 
 /// What is fitted, and to what.
+#[derive(Clone)]
 pub(super) struct Objective<'a> {
     pub(super) source: &'a StudyScene,
     pub(super) keys: &'a [FitKey],
@@ -29,6 +31,8 @@ pub(super) struct Objective<'a> {
     pub(super) offset: Option<f64>,
     /// Up to when the run is compared, s.
     pub(super) until: f64,
+    /// The time step, s, if not the scene's.
+    pub(super) step: Option<f64>,
     pub(super) cancel: &'a Arc<AtomicBool>,
 }
 
@@ -64,8 +68,11 @@ impl<'a> Objective<'a> {
 
     /// The scene's setting at shares of the ranges.
     pub(super) fn setting(&self, at: &[f64]) -> Setting {
+        let step = self.step.map(|step| Setting::none().set("time.step", in_seconds(step)));
         let pairs = self.keys.iter().zip(at);
-        pairs.fold(Setting::none(), |setting, (key, share)| setting.set(key.key(), key.text(key.at(*share))))
+        pairs.fold(step.unwrap_or_else(Setting::none), |setting, (key, share)| {
+            setting.set(key.key(), key.text(key.at(*share)))
+        })
     }
 
     /// The motion of the block with trial values.

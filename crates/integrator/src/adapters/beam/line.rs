@@ -69,11 +69,19 @@ impl Line {
 
     /// The coordinate along the beam of a place in the world. The ends belong to the beam, so a
     /// place beyond an end by no more than rounding is moved to it.
-    fn along(&self, span: f64, x: f64) -> f64 {
+    fn along(&self, [first, last]: [f64; 2], x: f64) -> f64 {
         let left = self.position.x;
         let along = x - left;
-        let rounding = 4.0 * f64::EPSILON * (left.abs() + span);
-        if (-rounding..=span + rounding).contains(&along) { along.clamp(0.0, span) } else { along }
+        let rounding = 4.0 * f64::EPSILON * (left.abs() + first.abs() + (last - first));
+        if (first - rounding..=last + rounding).contains(&along) { along.clamp(first, last) } else { along }
+    }
+
+    /// The section of a beam that moves along its axis which is at a place in the world now; `None` beyond the ends where they are
+    /// now.
+    fn before_moving(&self, beam: &impl Deflecting, q: &[f64], x: f64) -> Option<f64> {
+        let ends = [0.0, beam.span()].map(|end| end + beam.axial_displacement(q, end));
+        let x = self.along(ends, x);
+        (ends[0]..=ends[1]).contains(&x).then(|| before_moving(beam, q, x))
     }
 
     /// The foot point at the beam's own coordinate of `at`: the point of the surface with the same
@@ -85,17 +93,10 @@ impl Line {
         kinematics: Kinematics,
         at: &Vector2<f64>,
     ) -> Option<SurfacePoint<2>> {
-        let x = self.along(beam.span(), at.x);
         let (offset, facing) = (self.offset, self.facing);
-        let d = beam.deflection_at(q, x)?; // None beyond the ends, which belong to the beam
-        // The material point that is at x now.
         let moves = beam.has_axial_dofs() && kinematics == Kinematics::Deformed;
-        let (x, d) = if moves {
-            let x = before_moving(beam, q, x);
-            (x, beam.deflection_at(q, x)?)
-        } else {
-            (x, d)
-        };
+        let x = if moves { self.before_moving(beam, q, at.x)? } else { self.along([0.0, beam.span()], at.x) };
+        let d = beam.deflection_at(q, x)?; // None beyond the ends, which belong to the beam
         if kinematics == Kinematics::Linear {
             let place = Vector2::new(at.x, self.position.y + d.w + offset);
             return Some(SurfacePoint { place, normal: Vector2::y() * facing, material: Vector2::new(x, offset) });
@@ -151,7 +152,10 @@ impl Line {
         if !(level.is_finite() && direction.y * self.facing > 0.0) {
             return;
         }
-        let [a, b] = between.map(|place| place.x - self.position.x);
+        let [a, b] = between.map(|place| {
+            let along = place.x - self.position.x;
+            if beam.has_axial_dofs() { before_moving(beam, q, along) } else { along }
+        });
         // A point of the surface is beside its section by no more than the offset.
         let beside = self.offset.abs();
         let (low, high) = ((a.min(b) - beside).max(0.0), (a.max(b) + beside).min(beam.span()));
