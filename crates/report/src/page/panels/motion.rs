@@ -267,7 +267,7 @@ impl Panels {
                     if several { format!("{name} {axis}") } else { axis.to_owned() }
                 };
                 // Where curves have the extremes of many steps, what is smooth is drawn as that.
-                let t = self.curves.is_thinned().then(|| smooth_times(&self.curves)).unwrap_or_default();
+                let t = if self.curves.is_thinned() { smooth_times(&self.curves) } else { Vec::new() };
                 let smooth: Option<Vec<Vec<f64>>> = moving
                     .iter()
                     .map(|(_, driven, column, _)| smooth(&t, |t| driven.prescribed(t)[k], &self.curves.curve(*column)))
