@@ -11,7 +11,7 @@ import { chromium } from "playwright-core";
 import { keyboardWalk, playByKeys, plotsWithoutWords, violations } from "./accessible.mjs";
 import { pageData } from "./columns.mjs";
 import { flatAtFirst, outOfPicture, specksAtFirst, unfoldedOnPaper, unplotted, wrongVerdicts } from "./motion.mjs";
-import { otherLegends } from "./legends.mjs";
+import { otherAngles, otherLegends } from "./legends.mjs";
 import { leaningApart, wrongSaved } from "./picture.mjs";
 import { overlaps } from "./overlaps.mjs";
 import { plotsDrawn, plotsOfRounding } from "./rounding.mjs";
@@ -62,8 +62,11 @@ async function ofRun(page, run, problem, isFirst) {
       slider.dispatchEvent(new Event("input"));
     }, Math.round(fraction * (frames - 1)));
     const t = Number(await page.getAttribute("#time-readout", "data-t"));
-    const unread = await page.$$eval("#panel-phi .key b, #panel-x .key b, #panel-y .key b", (all) => all.filter((one) => one.textContent.includes("–")).length);
-    if (unread > 0) problem(`at t = ${t} ${unread} values of coordinates are not told`);
+    // Of contacts at the start: later they may touch nothing.
+    const told = fraction > 0 ? "#panel-phi .key b, #panel-x .key b, #panel-y .key b" : "#plots .key b";
+    const unread = await page.$$eval(told, (all) => all.filter((one) => one.textContent.includes("–")).length);
+    if (unread > 0) problem(`at t = ${t} ${unread} values are not told`);
+    (await page.evaluate(otherAngles)).forEach((text) => problem(`at t = ${t} ${text}`));
     const row = trajectory.find((one) => Math.abs(one.t - t) < 1e-9);
     if (!row) continue; // rows of the table may be further apart than frames
     for (const body of await page.$$eval("[data-body][data-x]", (all) => all.map(({ dataset }) => ({ ...dataset })))) {

@@ -1,5 +1,23 @@
 // Legends that stand for those of other plots.
 
+/** Angles beside the plot of φ that aren't those below the picture, to half of their last digit. Runs in the page. */
+export function otherAngles() {
+  const bodies = [...document.querySelectorAll("[data-body][data-phi]")].map(({ dataset }) => dataset);
+  const panel = document.getElementById("panel-phi");
+  const unit = { "°": 180 / Math.PI, rad: 1, mrad: 1e3 }[panel?.dataset.unit];
+  if (!unit) return [];
+  const keys = [...panel.querySelectorAll(".key")].filter((key) => key.querySelector("b"));
+  return keys.flatMap((key) => {
+    const name = [...key.childNodes].find((node) => node.nodeType === Node.TEXT_NODE)?.textContent;
+    const [body, text] = [bodies.find((one) => one.body === name) ?? bodies[0], key.querySelector("b").textContent.replace("−", "-")];
+    if (!body || (!name && keys.length > 1) || /e/.test(text)) return [];
+    const half = 0.5 * 10 ** -(text.split(".")[1] ?? "").length;
+    // What is at rest is 0.
+    const off = Math.abs(Number(text) - unit * Number(body.phi));
+    return off > half * (1 + 1e-6) + 1e-9 && text !== "0" ? [`φ of ${body.body} is ${text} in the plot, ${unit * Number(body.phi)} in the picture`] : [];
+  });
+}
+
 /** Plots that say "Curves as in" another one, in which a curve of the same name has another colour or other dashes. Runs in the page. */
 export function otherLegends() {
   const strokes = (panel) => new Map([...panel.querySelectorAll(".key")].map((key) => {

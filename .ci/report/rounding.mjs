@@ -104,7 +104,7 @@ export function plotsOfRounding(drawn, data, summary, envelopes) {
 
   for (const id of drawn) {
     const panel = data.panels.find((one) => one.id === id);
-    const [, what, number] = id.match(/^(normal|tangential|state|impacts)-(\d+)$/) ?? [];
+    const [, what, number] = id.match(/^(normal|enlarged|tangential|state|impacts)-(\d+)$/) ?? [];
     if (panel) overTime(panel);
     else if (data.portraits.some((one) => one.id === id)) portrait(data.portraits.find((one) => one.id === id));
     else if (what) ofContact(id, Number(number), what);

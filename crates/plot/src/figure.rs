@@ -164,9 +164,13 @@ impl Figure {
 
     /// The height in the units of the drawing.
     fn height(&self) -> f64 {
-        let above = if self.headed { HEADING } else { 0.0 };
         let panels = self.panels.iter().map(|panel| self.heights(panel));
-        above + panels.map(|(header, inner)| header + inner).sum::<f64>() + self.below()
+        self.above() + panels.map(|(header, inner)| header + inner).sum::<f64>() + self.below()
+    }
+
+    /// Height of the heading above the panels.
+    fn above(&self) -> f64 {
+        if self.headed { HEADING } else { 0.0 }
     }
 
     /// Height of the axis and the note below the panels.
@@ -182,7 +186,6 @@ impl Figure {
     #[must_use]
     pub fn to_svg(&self) -> String {
         let heights: Vec<(f64, f64)> = self.panels.iter().map(|panel| self.heights(panel)).collect();
-        let above = if self.headed { HEADING } else { 0.0 };
         let total = self.height();
         let beside = self.panels.iter().map(|panel| self.legend.beside(&panel.entries()).0).fold(0.0, f64::max);
         let width = self.width + beside;
@@ -202,7 +205,7 @@ impl Figure {
         if self.headed {
             let _ = writeln!(svg, "<text x=\"{LEFT}\" y=\"16\" font-size=\"13\">{title}</text>");
         }
-        let mut top = above;
+        let mut top = self.above();
         for (number, (panel, (header, height))) in self.panels.iter().zip(heights).enumerate() {
             top += header;
             let frame = Frame { top, height, across: self.width, x: &self.x };
@@ -234,7 +237,7 @@ impl Figure {
             return HEIGHTS[0];
         }
         let panels = self.panels.iter().map(|panel| self.heights_with(panel, HEIGHTS[1]));
-        let all = panels.map(|(header, inner)| header + inner).sum::<f64>() + self.below();
+        let all = panels.map(|(header, inner)| header + inner).sum::<f64>() + self.above() + self.below();
         HEIGHTS[1 + usize::from(all > TALL)]
     }
 
@@ -301,6 +304,20 @@ mod tests {
         let lower = figure(4).height_mm() / 4.0 - figure(6).height_mm() / 6.0;
         assert!(lower > 7.0, "{lower} mm a panel");
         assert!(figure(6).height_mm() < 220.0);
+    }
+
+    #[test]
+    fn a_heading_counts_for_how_tall_a_figure_is() {
+        let panel = || Panel::new(Axis::between("y", 0.0, 1.0)).with([Series::line("", [(0.0, 0.0), (1.0, 1.0)])]);
+        let figure =
+            || (0..5).fold(Figure::new("f", "t", Axis::between("x", 0.0, 1.0)).headed(), |of, _| of.panel(panel()));
+        let bare = figure().height_mm();
+        assert!(bare > 180.0, "{bare}");
+        for lines in 1..12 {
+            let note = "a word and one more ".repeat(5 * lines);
+            let tall = figure().note(note).height_mm();
+            assert!(tall <= 220.0, "{tall} mm with {lines} lines");
+        }
     }
 
     #[test]

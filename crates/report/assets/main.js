@@ -9,8 +9,13 @@
   /** The plots over time that the page has in common with the figures: units, scales and what is left out are decided there. */
   function addPanels(late) {
     for (const panel of data.panels.filter((one) => one.late === late)) {
-      const series = panel.series.map(({ label, index, y, raw, turns, at_borders: atBorders, ...rest }) =>
-        ({ label, index, y, raw, turns, t: atBorders ? forces.borders : curves.t, known: knownOf(rest) }));
+      // An angle has at a picture the value that is told below it.
+      const turn = { "°": degrees, rad: 1, mrad: 1e3 }[panel.unit];
+      const isAngle = !crowd && turn && (panel.id === "phi" || panel.id === "phi_rolling");
+      const angles = (block) => new Map([...frames.blocks[block].phi].map((phi, k) => [k, phi * turn]));
+      const series = panel.series.map(({ label, index, y, raw, turns, at_borders: atBorders, ...rest }) => ({
+        label, index, y, raw, turns, t: panel.t ?? (atBorders ? forces.borders : curves.t), known: isAngle ? angles(index) : knownOf(rest),
+      }));
       plots.add({
         id: panel.id, contact: panel.contact, title: panel.title, unit: panel.unit, series, guides: panel.guides, least: panel.least,
         cut: panel.cut, height: late ? 160 : 170,
@@ -112,6 +117,7 @@
       plots.add({
         id: `${key}-${k}`, contact: k, title: title + suffix, unit: `${prefix}N`, series: overTheRaw(lines, means), cut: forces.cuts[k][i] ?? undefined, floor: 0, least, height: 150,
       });
+      const enlarged = key === "normal" && forces.enlarged[k];
       const over = `${forces.rigid}${strikes.length ? " without the impacts" : ""}`;
       const ofSprings = forces.compliant?.includes(k);
       if (ofSprings && forces.springs) htmlElement("p", "note", sentence(forces.springs), byId(`panel-${key}-${k}`));
@@ -122,9 +128,16 @@
       if (forces.redundant?.includes(k)) {
         htmlElement("p", "note", "Equilibrium alone doesn't decide these forces: of rigid bodies that are held more than they need be, they are one of many sets that keep them in balance.", byId(`panel-${key}-${k}`));
       }
+      if (enlarged) {
+        plots.add({
+          id: `enlarged-${k}`, contact: k, title: `Normal force, enlarged${suffix}`, unit: `${prefix}N`, series: overTheRaw(lines, means).map((line) => ({ ...line })), cut: enlarged,
+          enlarged: true, floor: 0, least, height: 130,
+        });
+        htmlElement("p", "note", `The same ${enlarged.reach}.`, byId(`panel-enlarged-${k}`));
+      }
     }
     if (strikes.length) {
-      const [prefix, factor] = forces.impulse_unit;
+      const [prefix, factor] = forces.impulse_units[k];
       plots.add({
         id: `impacts-${k}`, contact: k, title: `Normal impulse of impacts${suffix}`, unit: `${prefix}N s`, series: series("impacts", factor, strikes), floor: 0, least: 1e-300, height: 110,
       });

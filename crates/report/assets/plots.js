@@ -63,7 +63,8 @@ const plots = (() => {
       htmlElement("span", "key", `${short}: ${name}`, legend);
     }
     if (panel.tooMany) htmlElement("span", "coincide", `${panel.tooMany} curves coincide, wholly or in part`, row);
-    if (panel.cut) {
+    // An enlarged plot stands below one that shows all.
+    if (panel.cut && !panel.enlarged) {
       const toggle = htmlElement("button", "link", "", row);
       toggle.type = "button";
       // Of what rings the pale band is cut, not single peaks.
@@ -421,9 +422,10 @@ const plots = (() => {
     panel.cursor.setAttribute("d", inView ? `M${at} ${margin.top}V${panel.height - margin.bottom}` : "M0 0");
   }
 
-  /** The value of a series at a time. Where a curve shows the extremes of many steps, `t` is that of a picture, whose value is known. */
+  /** The value of a series at a time: at that of a picture the one that is known there. Where a curve shows the extremes of many steps, `t` is that of one. */
   function read(series, t) {
-    const picture = curves.thinned ? frameAt(t) : -1;
+    const nearest = frameAt(t);
+    const picture = curves.thinned || times[nearest] === t ? nearest : -1;
     return series.known?.has(picture) ? series.known.get(picture) : valueAt(series, t);
   }
 

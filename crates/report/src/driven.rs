@@ -52,6 +52,11 @@ impl Driven {
         [state.q[self.index], state.v[self.index], self.motion.acceleration(state.t)]
     }
 
+    /// The same at any time, s, as it is prescribed; without the incline.
+    pub(crate) fn prescribed(&self, t: f64) -> [f64; 3] {
+        [self.motion.displacement(t), self.motion.velocity(t), self.motion.acceleration(t)]
+    }
+
     /// Appends the names of its columns, each after a comma.
     pub(crate) fn push_header(&self, header: &mut String) {
         for column in COLUMNS[self.component] {

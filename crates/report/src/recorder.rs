@@ -72,6 +72,9 @@ pub struct Record {
     /// The deflections at the times told of these, m.
     #[serde(default)]
     pub first_deflections: Vec<f64>,
+    /// The deepest penetration at the end of the last step, m.
+    #[serde(default)]
+    pub last_penetration: f64,
     /// What became of the blocks.
     pub fates: Fates,
     /// What the run warned of.
@@ -518,6 +521,7 @@ impl Observer<2> for Recorder<'_> {
         self.kept.resolution.observe(&self.bodies, self.layout, step, state);
         self.warn_of_bounces(model, step);
         let Kept { record, section_values, .. } = &mut self.kept;
+        record.last_penetration = step.penetration;
         let kept = (record.beams.as_mut_slice(), section_values);
         self.sections.observe(step, kept, &mut record.warnings);
         self.look_at_deflections(state);

@@ -390,7 +390,7 @@ impl Summary {
             ended,
             model: ModelSummary::new(scene, layout),
             warnings: Self::warnings(scene, state, record).collect(),
-            told: Told::of(scene),
+            told: Told::of(scene, record.last_penetration),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Words and numbers that the terminal and the page tell alike.
 
-use crate::Summary;
+use crate::{Summary, with_digits};
 use teeter_scenario::scene::{BlockScene, Scene};
 
 /// A penetration below this part of the largest block is rounding of positions.
@@ -16,10 +16,12 @@ pub(crate) struct Told {
     strikers: &'static str,
     /// Lengths up to this are told as 0, m.
     rounding: f64,
+    /// The deepest penetration at the end, m.
+    last_penetration: f64,
 }
 
 impl Told {
-    pub(crate) fn of(scene: &Scene) -> Self {
+    pub(crate) fn of(scene: &Scene, last_penetration: f64) -> Self {
         let is_sharp = |block: &BlockScene| match &block.parts {
             None => block.corner_count() > 2,
             Some(parts) => parts.iter().all(|part| part.shape.core().len() > 2 && part.shape.radius() == 0.0),
@@ -29,7 +31,7 @@ impl Told {
             () => " (each point counts)",
         };
         let largest = scene.blocks.iter().map(BlockScene::radius).filter(|reach| reach.is_finite()).fold(0.0, f64::max);
-        Self { strikers, rounding: ROUNDING * largest }
+        Self { strikers, rounding: ROUNDING * largest, last_penetration }
     }
 }
 
@@ -52,5 +54,17 @@ impl Summary {
     #[must_use]
     pub fn told_penetration(&self) -> f64 {
         if self.max_penetration > self.told.rounding { self.max_penetration } else { 0.0 }
+    }
+
+    /// What is told beside it of the penetration at the end, in words: the deepest one may have been one in passing, or be there for good. Nothing of one
+    /// that is gone, or less than a hundredth of the deepest.
+    #[must_use]
+    pub fn penetration_at_end(&self) -> Option<String> {
+        let (deepest, last) = (self.told_penetration(), self.told.last_penetration);
+        let told = |x: f64| with_digits(x, "m", 2);
+        (last > self.told.rounding.max(0.01 * deepest)).then(|| match told(last) == told(deepest) {
+            true => "still there at the end".to_owned(),
+            false => format!("{} at the end", told(last)),
+        })
     }
 }

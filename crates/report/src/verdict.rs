@@ -196,6 +196,8 @@ impl Seen {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Fates {
     blocks: Vec<Seen>,
+    /// When the run began, s: 0, but for one from the state of another.
+    began_at: f64,
     /// What held them at the start.
     joints: Joints,
     /// The time and stop that ended the run.
@@ -222,6 +224,7 @@ impl Fates {
         state: &State,
     ) -> Result<(), Mismatch> {
         self.blocks.clear();
+        self.began_at = state.t;
         let AtStart { standing, touching, past_edge } = standing::at_start(&watch.blocks, layout, model, state)?;
         self.joints = Joints::new(&touching, &watch.blocks, layout, state);
         for (number, ((watched, stands), past_edge)) in watch.blocks.iter().zip(standing).zip(past_edge).enumerate() {
@@ -415,7 +418,7 @@ impl Fates {
             (!watched.driven).then(|| {
                 let block = &scene.blocks[number];
                 let fell = seen.dropped.filter(|_| loose[number]);
-                seen.verdict(watched, (number, block), layout, state, (rocking.get(number), fell))
+                seen.verdict(watched, (number, block), layout, (self.began_at, state), (rocking.get(number), fell))
             })
         };
         let mut verdict: Vec<BodyVerdict> = self.blocks.iter().zip(&watch.blocks).enumerate().filter_map(of).collect();

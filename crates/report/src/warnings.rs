@@ -55,10 +55,20 @@ impl Warning {
 /// A finding of a scene of up to so many bytes says itself what it is about.
 const SHORT: usize = 110;
 
-/// The longest beginning of a finding that is short and ends where a clause does.
+/// The longest beginning of a finding that is short and ends where a clause does, not within a value, which is quoted or in brackets.
 fn shortened(finding: &str) -> Option<&str> {
-    let ends = finding.match_indices([':', ';', ',']).filter(|(end, _)| finding[end + 1..].starts_with(' '));
-    ends.map(|(end, _)| end).chain([finding.len()]).rfind(|end| *end <= SHORT).map(|end| &finding[..end])
+    let (mut quoted, mut depth) = (false, 0_usize);
+    let ends = finding.char_indices().filter(|(at, of)| {
+        match of {
+            '"' => quoted = !quoted,
+            '[' | '{' | '(' if !quoted => depth += 1,
+            ']' | '}' | ')' if !quoted => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        let is_end = matches!(of, ':' | ';' | ',') && finding[at + 1..].starts_with(' ');
+        is_end && !quoted && depth == 0
+    });
+    ends.map(|(end, _)| end).chain([finding.len()]).take_while(|end| *end <= SHORT).last().map(|end| &finding[..end])
 }
 
 /// The kind of the warning that a motion can be told up to a time before its end only.
@@ -157,6 +167,16 @@ mod tests {
             &tilted[22..]
         );
         assert_eq!(of(&format!("warning: a.toml:5:1: {}", "long ".repeat(40))), "the scene");
+    }
+
+    #[test]
+    fn the_subject_of_a_finding_does_not_end_within_a_value() {
+        let of = |text: String| Warning { code: "scene".into(), count: 1, first_t: None, text }.subject().to_owned();
+        let long = "long ".repeat(30);
+        let velocity = r#"block.b.velocity = ["3 m/s", "4 m/s"]"#;
+        assert_eq!(of(format!("warning: a.toml:5:1: {velocity}: {long}")), velocity);
+        let nowhere = format!(r#"warning: a.toml:5:1: points = {{ at = "1 cm", on = "b, c: {long}" }}"#);
+        assert_eq!(of(nowhere), "the scene");
     }
 
     #[test]

@@ -169,12 +169,15 @@ fn beam(of: &BeamScene, place: &BeamPlace) -> Vec<String> {
 }
 
 fn damping(of: &Damping) -> Option<String> {
-    let named = [("c", of.viscous, "N s/m²"), ("a₀", of.rayleigh_mass, "1/s"), ("a₁", of.rayleigh_stiffness, "s")];
-    let mut told: Vec<String> = named
-        .into_iter()
-        .filter(|(_, value, _)| *value != 0.0)
-        .map(|(name, value, unit)| format!("{name} = {} {unit}", shortest(value, 4)))
-        .collect();
+    let plain = |value: f64, unit: &str| format!("{} {unit}", shortest(value, 4));
+    let named = [
+        ("c", of.viscous, plain(of.viscous, "N s/m²")),
+        ("a₀", of.rayleigh_mass, plain(of.rayleigh_mass, "1/s")),
+        // Some microseconds, for which there is a prefix.
+        ("a₁", of.rayleigh_stiffness, with_unit(of.rayleigh_stiffness, "s")),
+    ];
+    let named = named.into_iter().filter(|(_, value, _)| *value != 0.0);
+    let mut told: Vec<String> = named.map(|(name, _, told)| format!("{name} = {told}")).collect();
     if !of.modal.is_empty() {
         let ratios: Vec<String> = of.modal.iter().take(4).map(|ratio| shortest(*ratio, 3)).collect();
         let more = if of.modal.len() > ratios.len() { ", …" } else { "" };

@@ -14,7 +14,7 @@ use super::opening::opening;
 use super::panels::{LEAST_FORCE, Panels, Place, Portrait, PortraitLine, TimePanel, prefix, time_unit};
 use super::recorder::{MANY_IMPACTS, PageRecorder};
 use super::span;
-use crate::with_digits;
+use crate::{shortest, with_digits};
 use cut_lines::{cut_axis, cut_lines, range_of};
 use noted::{Noted, noted_once};
 use teeter_plot::{Axis, Band, Colour, Figure, Legend, Panel, Series};
@@ -150,7 +150,7 @@ impl Plots<'_> {
     fn time_panel(&self, panel: &TimePanel) -> Noted {
         let borders = self.panels.curves.borders();
         let lines = panel.lines.iter().map(|line| {
-            let t = if line.of.is_none() { &borders } else { &self.t };
+            let t = panel.t.as_ref().unwrap_or(if line.of.is_none() { &borders } else { &self.t });
             let points = t.iter().copied().zip(line.y.iter().copied());
             let series = Series::line(&line.label, points).number(line.number).dashed_but_at(line.itself.clone());
             if line.is_raw { series.faint() } else { series }
@@ -325,7 +325,7 @@ impl Plots<'_> {
                     Some(_) => {}
                 }
                 if !forces.impacts.is_empty() {
-                    impacts.push(step(&forces.impacts, self.panels.impulse_unit.1, label));
+                    impacts.push(step(&forces.impacts, self.panels.impulse_units[pair].1, label));
                 }
                 bands.push(Band::new(label, stretches(&borders, forces)));
                 briefly |= (0..forces.state.len()).any(|bucket| forces.does(bucket) == Does::Briefly);
@@ -338,6 +338,7 @@ impl Plots<'_> {
             let weight = values(&normal).fold(0.0, f64::max) / self.panels.force_units[pair][0].1;
             let units = self.panels.force_units[pair];
             let cuts = self.panels.cuts_of_contact(self.recorder, pair, &means_of_points);
+            let enlarged = self.panels.enlarged_normal(self.recorder, pair, &means_of_points, cuts[0]);
             for ((what, mut lines), ((prefix, factor), cut)) in
                 [("Normal", normal), ("Tangential", tangential)].into_iter().zip(units.into_iter().zip(cuts))
             {
@@ -358,6 +359,12 @@ impl Plots<'_> {
                     None => Axis::around(label, values(&lines).chain([0.0]), least),
                 };
                 let has_means = lines.iter().any(Series::is_faint);
+                let enlarged = enlarged.filter(|_| what == "Normal").map(|end| {
+                    let (end, lines) = (end * factor, lines.clone());
+                    let y = Axis::between(format!("Enlarged ({unit})"), -0.06 * end, end);
+                    let note = Note::of_plot(format!("normal force up to {} {unit}", shortest(end, 2)));
+                    (Panel::new(y).with(lines).telling_apart(), vec![note])
+                });
                 let (lines, about_pale, told) = cut_lines(lines, cut, range, &unit);
                 let without = if impacts.is_empty() { "" } else { " without impacts" };
                 let meant = if contact.has_duration {
@@ -375,9 +382,10 @@ impl Plots<'_> {
                 let turns = turns.map(|who| Note::of_plot(format!("{who} by turns")));
                 let notes = [name.clone(), meant, strong, turns, told, many].into_iter().flatten().collect();
                 panels.push((self.marked(Panel::new(y).with(lines).telling_apart(), Some(pair)), notes));
+                panels.extend(enlarged);
             }
             if !impacts.is_empty() {
-                let label = format!("Impulse of impacts ({}N s)", self.panels.impulse_unit.0);
+                let label = format!("Impulse of impacts ({}N s)", self.panels.impulse_units[pair].0);
                 let y = Axis::around(label, values(&impacts).chain([0.0]), 1e-300);
                 panels.push((
                     Panel::new(y).with(impacts).telling_apart(),

@@ -194,8 +194,13 @@ impl Filter {
                 let is_rest = borders[end] - borders[after.min(end)] < 0.5 * self.period;
                 let after = if is_rest { end } else { after.clamp(first + 1, end) };
                 if turns(&values[2 * first..=2 * after], STRAY * most) <= SLOW_TURNS {
+                    // What doesn't ring after a jolt is the curve from its first point on.
+                    let is_after_jolt = first == begin && begin > 0;
+                    if is_after_jolt {
+                        nodes.clear();
+                    }
                     nodes.extend((first..after).map(|k| (borders[k + 1], values[2 * k + 2])));
-                    itself[first..=after].fill(true);
+                    itself[first + usize::from(is_after_jolt)..=after].fill(true);
                     first = after;
                     continue;
                 }
@@ -423,6 +428,22 @@ mod tests {
                 t if t > 0.62 => assert!((largest - slow).abs() < 1e-3, "{largest}, not {slow} at {t}"),
                 _ => {}
             }
+        }
+    }
+
+    /// It rings up to a jolt, and not from then on: no point behind that is of what rang before.
+    #[test]
+    fn right_after_a_jolt_a_stress_that_does_not_ring_is_itself() {
+        let tau = 2.0 * std::f64::consts::PI;
+        let stress = |t: f64| if t < 0.5 { 6.0 + 3.0 * (tau * 400.0 * t).sin() } else { 1.0 + t };
+        let mut curves = Curves::new(10_000, 0.0, vec![stress(0.0)], 0);
+        (1..=20_000).map(|k| 5e-5 * f64::from(k)).for_each(|t| curves.enter(t, &[stress(t)]));
+        let filter = Filter::with(longest(&curves), &curves.borders(), &jolts(&[0.5]));
+        let Largest { values, itself } = filter.through_the_largest(&curves, 0, Some(true)).unwrap();
+        for ((largest, itself), t) in values.iter().zip(itself).zip(curves.borders()) {
+            // A bucket has two steps.
+            assert_eq!(itself, t > 0.5 - 1e-9, "at {t}");
+            assert!(!itself || (largest - stress(t)).abs() < 1e-3, "{largest}, not {} at {t}", stress(t));
         }
     }
 

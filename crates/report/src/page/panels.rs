@@ -21,11 +21,11 @@ mod sections;
 mod units;
 
 pub(crate) use cut::Cut;
-use cut::cut_at;
+use cut::{cut_at, enlarged};
 pub(crate) use forces::unseen_slip;
 pub(crate) use sections::after_impacts;
-use units::contact_sizes;
 pub(crate) use units::{LEAST_FORCE, Measure, Unit, Units, length_unit, prefix, time_unit};
+use units::{contact_sizes, impulse_units};
 
 /// Where on the page a panel stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,6 +56,8 @@ pub(crate) struct TimePanel {
     pub(crate) least: f64,
     /// Lines across it, in its unit.
     pub(crate) guides: Vec<f64>,
+    /// The times of all of its lines, s, where these are others than those of the curves and their borders.
+    pub(crate) t: Option<Vec<f64>>,
     /// Whether the peaks of impacts are cut.
     pub(crate) cut: bool,
     pub(crate) place: Place,
@@ -74,7 +76,7 @@ pub(crate) struct Line {
     pub(crate) is_raw: bool,
     /// Of one through the largest values where the quantity rings: where it is the quantity itself. Empty if it is all along, or nowhere.
     pub(crate) itself: Vec<bool>,
-    /// Where in the curves it is from; none where its times are the borders of buckets, not those of the curves.
+    /// Where in the curves it is from; none where its times are the borders of buckets, or the panel's own, not those of the curves.
     pub(crate) of: Option<Source>,
 }
 
@@ -166,8 +168,8 @@ pub(crate) struct Panels {
     pub(crate) units: Units,
     /// The prefixes of the units of normal and of tangential forces, with their factors, by contacts.
     pub(crate) force_units: Vec<[Unit; 2]>,
-    /// The prefix of the unit of impulses of impacts, with its factor: that of the largest of all.
-    pub(crate) impulse_unit: Unit,
+    /// The prefixes of the units of impulses of impacts, with their factors, by contacts.
+    pub(crate) impulse_units: Vec<Unit>,
     /// Whether normal forces are more than rounding, by contacts: not of those that only strike.
     pub(crate) normal: Vec<bool>,
     /// Whether tangential forces are more than rounding, by contacts.
@@ -213,7 +215,7 @@ impl Panels {
             tangential: vec![true; recorder.scenery.contacts.len()],
             units: Units::of(recorder.scenery.display.length, &[]),
             force_units: Vec::new(),
-            impulse_unit: prefix(largest(forces.iter().flatten().flat_map(|forces| &forces.impacts))),
+            impulse_units: impulse_units(recorder, &forces),
             redundant: redundant(recorder, &curves, &forces),
             sums: Vec::new(),
             curves,
@@ -355,6 +357,24 @@ impl Panels {
             None => cut_at(own.map(|(forces, _)| (false, forces.drawn(1))), least),
         };
         [cut_at(normal, least), tangential]
+    }
+
+    /// Where the axis of a second plot of a contact's normal forces ends, N, if the first one, with this cut, ends so far above what they mostly are that
+    /// a resting weight can't be read there.
+    pub(crate) fn enlarged_normal(
+        &self,
+        recorder: &PageRecorder,
+        pair: usize,
+        means: &[Option<Vec<f64>>],
+        cut: Option<Cut>,
+    ) -> Option<f64> {
+        let contact = &recorder.scenery.contacts[pair];
+        let points = contact.first..contact.first + contact.points.len();
+        let own = self.forces[points.clone()].iter().zip(&means[points]);
+        let strong = own.filter_map(|(forces, mean)| Some((forces.as_ref()?, mean)));
+        let strong = strong.map(|(forces, mean)| mean.as_deref().unwrap_or_else(|| forces.drawn(0)));
+        let limit = cut.map_or_else(|| largest(strong.clone().flatten()), |cut| cut.limit);
+        enlarged(strong, limit, LEAST_FORCE * self.strongest())
     }
 
     /// The largest normal force of all contacts, N.

@@ -95,9 +95,18 @@ pub fn half_cycles(recorder: &PageRecorder, summary: &Summary) -> Vec<HalfCycle>
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LeftOutCycles {
     pub(crate) body: String,
-    /// How many crossings of it the summary has, and near how many a corner landed.
+    /// How many crossings of it the summary has.
     pub(crate) count: usize,
-    pub(crate) hits: usize,
+    pub(crate) why: WhyLeftOut,
+}
+
+/// Why passages of a block are left out of the half cycles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum WhyLeftOut {
+    /// A corner landed near so few of them, fewer than half.
+    FewLandings(usize),
+    /// They are against a beam's undeformed axis: against the line between its feet it hardly swung.
+    HardlySwings,
 }
 
 /// The half cycles of a run, and of which blocks they are left out.
@@ -116,7 +125,7 @@ pub(crate) fn half_cycles_and_left_out(
         });
         let stands = |t: f64| (stands.0..=stands.1).contains(&t);
         let stands_alone = recorder.scenery.stands_alone(number);
-        let (own, mut hits) = (cycles.len(), 0);
+        let (own, mut hits, mut passed) = (cycles.len(), 0, false);
         let mut peaks = summary.passages.peaks.iter().filter(|peak| peak.body == block.name).peekable();
         for crossing in summary.passages.crossings.iter().filter(|crossing| crossing.body == block.name) {
             let before = peaks.next();
@@ -124,6 +133,7 @@ pub(crate) fn half_cycles_and_left_out(
             if !stands(crossing.t) {
                 continue;
             }
+            passed = true;
             if size(before.as_ref()).max(size(peaks.peek())) < LEAST * alpha {
                 continue;
             }
@@ -185,12 +195,17 @@ pub(crate) fn half_cycles_and_left_out(
         }
         // On rigid contacts one corner stands as the other comes down, unless it bounces or tumbles, which is no rocking.
         let all_kept = recorder.kept.impact_count as usize <= recorder.kept.impacts.len();
-        let count = cycles.len() - own;
-        if 2 * hits < count && all_kept && recorder.scenery.touches_rigidly(number) {
+        let few = 2 * hits < cycles.len() - own && all_kept && recorder.scenery.touches_rigidly(number);
+        let why = match () {
+            () if few => Some(WhyLeftOut::FewLandings(hits)),
+            () if !passed && recorder.scenery.is_on_beam(number) => Some(WhyLeftOut::HardlySwings),
+            () => None,
+        };
+        // All of them, as the terminal and the summary count them.
+        let count = summary.crossings.iter().filter(|crossing| crossing.body == block.name).count();
+        if let Some(why) = why.filter(|_| count > 0) {
             cycles.truncate(own);
-            // All of them, as the terminal and the summary count them.
-            let count = summary.crossings.iter().filter(|crossing| crossing.body == block.name).count();
-            left_out.push(LeftOutCycles { body: block.name.clone(), count, hits });
+            left_out.push(LeftOutCycles { body: block.name.clone(), count, why });
         }
     }
     (cycles, left_out)

@@ -1,10 +1,11 @@
 //! The lines of thrust on the page: the drawing, and the joints as a table.
 
 use super::recorder::PageRecorder;
+use super::widths::drawing_for_any_width;
 use super::{Joint, rounded};
 use super::{content, drawings};
 use std::fmt::Write;
-use teeter_plot::{Theme, escaped};
+use teeter_plot::escaped;
 
 /// The section; `many`: whether the contact forces are one of many sets at the end. Empty without a chain of blocks.
 pub(super) fn section(recorder: &PageRecorder, many: bool) -> String {
@@ -13,12 +14,12 @@ pub(super) fn section(recorder: &PageRecorder, many: bool) -> String {
     let joints: usize = lines.iter().map(|line| line.joints.len()).sum();
     let mut html = format!(
         "<section id=\"thrust\" class=\"panel\" aria-labelledby=\"thrust-title\">\n<h3 id=\"thrust-title\">Line of \
-         thrust at the end</h3>\n<div class=\"page-drawing\">{}</div>\n<details><summary>Eccentricity of the {joints} \
+         thrust at the end</h3>\n{}<details><summary>Eccentricity of the {joints} \
          joints</summary><div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-labelledby=\"thrust-title\"><table>\n\
          <thead><tr><th scope=\"col\">Joint</th><th scope=\"col\">e<br><small>mm</small></th><th scope=\"col\">e / depth\
          </th><th scope=\"col\">Normal<br><small>N</small></th><th scope=\"col\">Shear<br><small>N</small></th></tr></thead>\n\
          <tbody>\n",
-        drawing.theme(Theme::Page).to_svg()
+        drawing_for_any_width(&drawing)
     );
     for joint in lines.iter().flat_map(|line| &line.joints) {
         let Joint { between: [one, other], .. } = joint;

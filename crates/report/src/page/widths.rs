@@ -1,6 +1,6 @@
 //! Figures on pages: one for wide windows, one for telephones.
 
-use teeter_plot::{Figure, Theme};
+use teeter_plot::{Drawing, Figure, Theme};
 
 /// Width of a figure in a narrow window, mm: about that of a telephone, so that its text is as large as the page's.
 const NARROW: f64 = 88.0;
@@ -17,6 +17,16 @@ pub fn for_any_width(figure: &Figure, wide: f64) -> String {
         "<div class=\"themed wide\">{}</div>\n<div class=\"themed narrow\">{}</div>\n",
         svg(figure.clone(), wide),
         svg(figure.clone().extend_id("narrow"), NARROW)
+    )
+}
+
+/// The same of a drawing.
+pub(super) fn drawing_for_any_width(drawing: &Drawing) -> String {
+    let drawing = drawing.clone().theme(Theme::Page);
+    format!(
+        "<div class=\"page-drawing wide\">{}</div>\n<div class=\"page-drawing narrow\">{}</div>\n",
+        drawing.to_svg(),
+        drawing.clone().width_mm(NARROW).to_svg()
     )
 }
 

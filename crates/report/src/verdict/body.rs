@@ -96,7 +96,10 @@ pub struct BodyVerdict {
     /// Since when it is still, of one that is so at the end, but not for long enough to rest, s.
     #[serde(skip)]
     pub(crate) still_from: Option<f64>,
-    /// From when on it stands, s: 0, or when it settled; none of what flies or tumbles on.
+    /// When the run began, s: 0, but for one from the state of another.
+    #[serde(skip)]
+    pub(crate) start: f64,
+    /// From when on it stands, s: the start, or when it settled; none of what flies or tumbles on.
     #[serde(skip)]
     pub(crate) stands_from: Option<f64>,
     /// Of a block that rocks and has not been upright yet, nor turned back: its angle at the end, rad.
@@ -163,6 +166,16 @@ impl BodyVerdict {
     /// Whether it has only moved with the beam on which it stood, which isn't at rest itself since the block is.
     pub(crate) fn moves_with_beam(&self) -> bool {
         self.stood_on.is_some() && self.unmoved_from != self.rests_from
+    }
+
+    /// Whether it has rested from the start of the run on.
+    pub(crate) fn rests_throughout(&self) -> bool {
+        self.rests_from == Some(self.start)
+    }
+
+    /// When it settled, s, of one that began in flight.
+    pub(crate) fn settled_at(&self) -> Option<f64> {
+        self.stands_from.filter(|t| *t > self.start)
     }
 
     /// Its largest φ/α as it is told: of the lowest block of a column that of all of it; none where nothing of its own brings it back.

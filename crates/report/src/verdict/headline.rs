@@ -111,7 +111,7 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     let largest = of.share().filter(|part| *part >= super::ROCKED);
     let of_all = if of.column.is_some() { " of the column" } else { "" };
     // It may have flown at a larger angle.
-    let since = if of.stands_from > Some(0.0) { " since it settled" } else { "" };
+    let since = if of.settled_at().is_some() { " since it settled" } else { "" };
     let largest = largest.map_or_else(String::new, |part| format!("largest φ/α{of_all}{since} {}", self::part(part)));
     // Both in the unit of the larger.
     let far = of.slid.into_iter().chain(of.farthest).fold(0.0, |far: f64, way| far.max(way.abs()));
@@ -155,7 +155,7 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         .as_ref()
         .map_or_else(String::new, |(way, beam)| format!(", then fell off the {} end of `{beam}`", way.word()));
     let fate = match of.what {
-        Fate::Overturned if of.t == Some(0.0) => {
+        Fate::Overturned if of.t == Some(of.start) => {
             format!("began past its critical angle and overturned to the {way}{off}{turned}{then_rested}")
         }
         Fate::Overturned => {
@@ -181,7 +181,7 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         Fate::Rests if of.turns_with.is_some() => {
             format!("rocked as one with `{}`, came to rest{at}", of.turns_with.as_deref().unwrap_or_default())
         }
-        Fate::Rests if of.t == Some(0.0) => {
+        Fate::Rests if of.rests_throughout() => {
             let how = if side.is_empty() { "stood" } else { "lay" };
             let on = moving_base(scene, &[of]);
             let still = if on.is_empty() { " still" } else { "" };
@@ -226,7 +226,7 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             let drift = if of.has_slid { format!(", {slid}") } else { String::new() };
             beside(format!("rocks on{peak}{drift}"))
         }
-        Fate::Moves if of.still_from == Some(0.0) && scene.settles_at() < end => {
+        Fate::Moves if of.still_from == Some(of.start) && scene.settles_at() < end => {
             beside("has been still, too short a run to tell whether it rests".to_owned())
         }
         Fate::Moves if of.still_from.is_some() && of.going.is_none() => {

@@ -13,7 +13,7 @@ impl Seen {
         watched: &Watched,
         (number, block): (usize, &BlockScene),
         layout: &Layout,
-        state: &State,
+        (start, state): (f64, &State),
         (rocking, fell): (Option<&RockingMonitor>, Option<f64>),
     ) -> BodyVerdict {
         let rests = Fates::rests(self, watched, state.t);
@@ -35,7 +35,7 @@ impl Seen {
         let stays_up = overturned.is_none() && fell.is_none();
         let displaced = self.stood.zip(place).map(|(from, to)| to - from).filter(|_| stays_up);
         // What began in flight, or flies at the end, turns about its mass centre: no foot says where it is.
-        let began_in_flight = self.stands_from != Some(0.0);
+        let began_in_flight = self.stands_from != Some(start);
         let flown =
             Some(watched.centre(layout, number, state) - self.released).filter(|_| stays_up && watched.feet.is_some());
         let slides = Some(&self.slides).filter(|_| stays_up && self.touched.any());
@@ -139,10 +139,11 @@ impl Seen {
         let trembles = || (stands && turning.is_none()).then_some(Going::Trembles);
         let going = going.or_else(trembles);
         // What rests on its beam from the start may have moved with it; where supports move it is told to stand on these.
-        let moved = rests != Some(0.0) || (self.unmoved != Some(0.0) && watched.driven_until == 0.0);
-        let is_here = matches!(what, Fate::Rests | Fate::Moves) && moved && self.stands_from == Some(0.0);
+        let moved = rests != Some(start) || (self.unmoved != Some(start) && watched.driven_until == 0.0);
+        let is_here = matches!(what, Fate::Rests | Fate::Moves) && moved && !began_in_flight;
         let beam = |when: bool| watched.carrier.beam().filter(|_| when).map(|beam| layout.beams[beam].name.clone());
         BodyVerdict {
+            start,
             body: layout.blocks[number].name.clone(),
             what,
             t,

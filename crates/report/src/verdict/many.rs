@@ -30,7 +30,7 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
         }
         let way = earliest.way.map_or_else(String::new, |way| format!(" to the {}", way.word()));
         let when = match earliest.t {
-            Some(0.0) if earliest.what == Fate::Overturned => " from the start".to_owned(),
+            Some(t) if t == earliest.start && earliest.what == Fate::Overturned => " from the start".to_owned(),
             t => t.map_or_else(String::new, |t| format!(" at {}", time(t))),
         };
         // One that is different from the rest is named.
@@ -90,7 +90,7 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
     let stood: Vec<_> = verdict.iter().filter(|of| of.stood_on.is_some()).collect();
     tell(&stood, if stood.len() == 1 { "stood on its beam throughout" } else { "stood on their beams throughout" }, "");
     let resting = || usual().filter(|of| matches!(of.what, Fate::Rests | Fate::Slid) && of.rests_from.is_some());
-    let (stood, moved): (Vec<_>, Vec<_>) = resting().partition(|of| of.rests_from == Some(0.0));
+    let (stood, moved): (Vec<_>, Vec<_>) = resting().partition(|of| of.rests_throughout());
     // What never moved didn't come to rest.
     for resting in [moved, stood] {
         if let Some(last) = resting.iter().filter_map(|of| of.rests_from).reduce(f64::max) {
@@ -102,7 +102,7 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
                 [slid, over].into_iter().filter(|(count, _)| *count > 0).map(|(count, how)| format!("{count} {how}"));
             let told = told.collect::<Vec<_>>().join(", ");
             let how = if told.is_empty() { told } else { format!(" ({told})") };
-            let what = if last == 0.0 {
+            let what = if resting.iter().all(|of| of.rests_throughout()) {
                 match moving_base(scene, &resting) {
                     "" => "stood still throughout".to_owned(),
                     on => format!("stood{on} throughout"),

@@ -1,6 +1,6 @@
 //! The sentence on what became of a scene, where a word would say more than is true.
 
-use crate::page::{run, scenario};
+use crate::page::{run, run_from, scenario};
 use crate::sizes::tile;
 use teeter_report::half_cycles;
 
@@ -18,6 +18,43 @@ fn what_bounces_neither_rocks_nor_slides() {
     assert!(!bouncing.summary.crossings.is_empty() && half_cycles(&bouncing.page, &bouncing.summary).is_empty());
     assert!(!bouncing.html.contains("id=\"rocking\""));
     assert!(bouncing.html.contains("id=\"no-half-cycles\""), "it says why");
+}
+
+/// Its passages are those of the beam's axis: from the line between its feet it swings by less than counts, of which no half cycle is listed.
+#[test]
+fn why_a_block_on_a_beam_has_no_half_cycles_is_told() {
+    let text = "[time]\nend = '0.8 s'\nstep = '50 us'\n[material.alu]\ndensity = '2700 kg/m^3'\nyoungs_modulus = '69 GPa'\n[beam.table]\n\
+        material = 'alu'\nspan = '50 cm'\nwidth = '4 cm'\nthickness = '2.5 mm'\nelements = 40\nsupports = ['clamped', 'clamped']\n\
+        start = 'static'\ndamping_ratio = { mode = 1, ratio = 0.02 }\n[block.tall]\nmaterial = 'alu'\nwidth = '3 cm'\nheight = '12 cm'\n\
+        depth = '3 cm'\non = 'table'\nat = '17 cm'\ntilt = '6 deg'\n[block.wide]\nmaterial = 'alu'\nwidth = '6 cm'\nheight = '5 cm'\n\
+        depth = '3 cm'\nposition = ['33 cm', '8 cm']\n[contact.feet]\nbetween = ['*', 'table']\nfriction = 0.5\n\
+        [contact.sides]\nbetween = ['tall', 'wide']\nfriction = 0.3\n";
+    let beside = run("wide-beside-tall", text);
+    let cycles = half_cycles(&beside.page, &beside.summary);
+    assert!(!cycles.is_empty() && cycles.iter().all(|cycle| cycle.body == "tall"));
+    let passed = beside.summary.crossings.iter().filter(|crossing| crossing.body == "wide").count();
+    assert!(passed > 1, "{passed}");
+    let told = format!("against the beam’s undeformed axis: wide passed φ = 0 {passed} times.");
+    assert!(beside.html.contains(&told), "{told}");
+}
+
+/// A run that goes on from the state of another one begins with what stands there standing: it wasn't released in flight.
+#[test]
+fn what_stands_in_the_state_that_a_run_begins_with_has_stood_from_its_start() {
+    let text = |end: &str| {
+        format!(
+            "[time]\nend = '{end}'\nstep = '500 us'\n[ground]\n[block.stands]\ndensity = '2400 kg/m^3'\nwidth = '10 cm'\nheight = '20 cm'\n\
+             depth = '10 cm'\non = 'ground'\nat = '0 m'\n[block.rocks]\ndensity = '2400 kg/m^3'\nwidth = '10 cm'\nheight = '30 cm'\n\
+             depth = '10 cm'\non = 'ground'\nat = '1 m'\ntilt = '8 deg'\n[contact.feet]\nbetween = ['*', 'ground']\nfriction = 0.5\n"
+        )
+    };
+    let (_, state) = run_from("goes-on", &text("0.5 s"), None);
+    let (on, _) = run_from("went-on", &text("1 s"), Some(state));
+    let headline = &on.summary.headline;
+    assert!(headline.starts_with("`stands` stood still throughout; `rocks` rocks on, last peak "), "{headline}");
+    assert!(!headline.contains("since it settled") && !on.html.contains("since it settled"), "{headline}");
+    assert_eq!(on.summary.verdict[0].rests_from, Some(0.5));
+    assert!(on.summary.verdict[0].displaced.is_some());
 }
 
 fn dropped(name: &str, end: &str, step: &str, block: &str, floor: &str) -> String {
@@ -516,4 +553,24 @@ fn what_overturned_and_fell_off_its_beam_is_told_to() {
         "{}",
         told("10 cm")
     );
+}
+
+/// A block that lands in a step ends some micrometres deep in rigid ground, and stays there; one that bounces up again leaves it.
+#[test]
+fn a_penetration_that_stays_is_told_to() {
+    let text = |end: &str, height: &str| {
+        format!(
+            "[time]\nend = '{end}'\nstep = '500 us'\nscheme = 'moreau-jean'\n[ground]\n[block.b]\ndensity = '2000 kg/m^3'\n\
+             width = '20 cm'\nheight = '10 cm'\ndepth = '10 cm'\nposition = ['0 m', '{height}']\n[contact.feet]\nbetween = ['b', 'ground']\nfriction = 0.5\nrestitution = 0.5\n"
+        )
+    };
+    let (lies, state) = run_from("lies-deep", &text("1 s", "80 mm"), None);
+    let depth = 0.05 - state.q[1];
+    assert!(depth > 1e-8 && lies.summary.max_penetration >= depth, "{depth}");
+    let told = lies.summary.penetration_at_end().unwrap();
+    assert!(told.ends_with("at the end"), "{told}");
+    assert!(lies.html.contains(&format!("<dt>Deepest penetration, {told}</dt>")));
+    let (flies, state) = run_from("bounced-out", &text("110 ms", "85 mm"), None);
+    assert!(state.q[1] > 0.05 && flies.summary.max_penetration > 1e-5);
+    assert_eq!(flies.summary.penetration_at_end(), None);
 }

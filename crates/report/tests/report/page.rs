@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
-use teeter_integrator::Observer;
+use teeter_integrator::{Observer, State};
 use teeter_report::{EndedWord, PageRecorder, Recorder, Results, Summary, figures, half_cycles, render};
 use teeter_scenario::simulation::Simulation;
 
@@ -19,8 +19,14 @@ pub(crate) struct Run {
 
 /// Runs a scene, and leaves its page and figures where they can be looked at.
 pub(crate) fn run(name: &str, text: &str) -> Run {
+    run_from(name, text, None).0
+}
+
+/// The same, from the state of another run if there is one; with the state at the end.
+pub(crate) fn run_from(name: &str, text: &str, from: Option<State>) -> (Run, State) {
     let resolved = teeter_scenario::load(text.as_bytes(), name, name, &[]).unwrap();
     let mut simulation = Simulation::new(&resolved.scene).unwrap();
+    simulation.state = from.unwrap_or(simulation.state);
     let layout = simulation.layout.clone();
     // By process: a runner that gives each test its own would have them write over one another.
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("page-{}", std::process::id())).join(name);
@@ -38,7 +44,7 @@ pub(crate) fn run(name: &str, text: &str) -> Run {
     for (file, svg) in figures(&page) {
         fs::write(folder.join(file), svg).unwrap();
     }
-    Run { page, summary, html, folder }
+    (Run { page, summary, html, folder }, simulation.state)
 }
 
 /// Each scenario runs once, for all tests: they read the same folder.
@@ -216,7 +222,7 @@ fn the_curves_miss_no_peak_and_the_forces_no_impulse() {
     // Impacts have impulses of their own.
     let impacts: f64 = run.summary.impacts.iter().map(|impact| impact.impulse_n).sum();
     let shown = data["forces"]["points"].as_array().unwrap().iter().flat_map(|point| numbers(&point["impacts"]));
-    let [_, factor] = data["forces"]["impulse_unit"].as_array().unwrap().as_slice() else { panic!("{data}") };
+    let [_, factor] = data["forces"]["impulse_units"][0].as_array().unwrap().as_slice() else { panic!("{data}") };
     assert!(factor.as_f64().is_some());
     let shown: f64 = shown.sum();
     // What the other foot gets of an impact is shown, too: next to nothing, as it lifts.

@@ -453,3 +453,24 @@ friction = 0.5
     let limit = page["forces"]["cuts"][0][0]["limit"].as_f64();
     assert!(strongest > 10.0 && limit.is_none_or(|limit| limit >= 1.4 * strongest), "{limit:?} N of {strongest} N");
 }
+
+/// Its curve is no polygon through the extremes of stretches of steps.
+#[test]
+fn a_sine_of_the_ground_is_one_in_a_long_run() {
+    let text = "[time]\nend = '2 s'\nstep = '50 us'\n[ground]\nmotion = { displacement = ['8 mm', '0 mm'], signal = 'shake' }\n[signal.shake]\n\
+        shape = 'harmonic'\nphase = '90 deg'\nfrequency = '2 Hz'\n[block.b]\ndensity = '2400 kg/m^3'\nwidth = '20 cm'\nheight = '10 cm'\n\
+        depth = '10 cm'\non = 'ground'\nat = '0 m'\n[contact.feet]\nbetween = ['b', 'ground']\nfriction = 0.5\n";
+    let shaken = run("long-sine", text);
+    let data = data(&shaken.html);
+    assert_eq!(data["curves"]["thinned"], true, "each step is drawn");
+    let panel = panel(&data, "ground_a").unwrap();
+    let (t, y) = (numbers(&panel["t"]), numbers(&panel["series"][0]["y"]));
+    assert_eq!(t.len(), y.len());
+    assert!(t.len() > 1000, "{}", t.len());
+    let omega = 4.0 * std::f64::consts::PI;
+    for (t, y) in t.iter().zip(&y) {
+        // The page has a hundred-thousandth of the range of a curve.
+        let wanted = -8e-3 * omega * omega * (omega * t).cos();
+        assert!((y - wanted).abs() < 1e-4, "{y}, not {wanted} at {t}");
+    }
+}

@@ -7,7 +7,7 @@ use crate::page::notes::joined;
 use crate::page::panels::{Cut, Line, Panels, Place, Source, unseen_slip};
 use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, PageRecorder, coordinate_in};
 use crate::page::scenery::ContactDrawn;
-use crate::with_digits;
+use crate::{shortest, with_digits};
 use serde::Serialize;
 
 /// A plot over time.
@@ -21,6 +21,9 @@ pub(super) struct PanelData {
     least: f64,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     guides: Vec<f64>,
+    /// Its times, where these are others than those of the curves or the borders.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    t: Option<Column>,
     /// Where the axis ends if peaks are cut.
     #[serde(skip_serializing_if = "Option::is_none")]
     cut: Option<CutData>,
@@ -82,6 +85,10 @@ impl SeriesData {
             let drawn = linear(&panels.curves.times(), &line.y, pictures());
             for (picture, (value, drawn)) in values.into_iter().zip(drawn).enumerate() {
                 let value = value.map(|value| source.drawn(value));
+                // What a spring's force is before the first step is known from that alone, which is what is drawn.
+                if picture == 0 && value.is_none_or(f64::is_nan) {
+                    continue;
+                }
                 if value.is_some_and(|x| (x - drawn).abs() <= READ * x.abs().max(least)) {
                     continue;
                 }
@@ -191,10 +198,12 @@ pub(super) struct ForceData {
     rigid: String,
     /// What those of impulses of impacts show.
     struck: String,
-    /// The unit of `impacts`: the prefix, and by what N s are multiplied.
-    impulse_unit: (&'static str, f64),
+    /// The units of `impacts`, by contacts: the prefix, and by what N s are multiplied.
+    impulse_units: Vec<(&'static str, f64)>,
     /// Where the axes of normal and tangential forces end if peaks are cut, by contacts, in their units.
     cuts: Vec<[Option<CutData>; 2]>,
+    /// Where the axis of a second plot of the normal forces ends, in their unit, with the unit, by contacts: where the first one shows nothing of what rests.
+    enlarged: Vec<Option<CutData>>,
     /// Contacts that only strike, without forces between impacts.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     forceless: Vec<usize>,
@@ -253,6 +262,7 @@ pub(super) fn time_panels(recorder: &PageRecorder, panels: &Panels) -> Vec<Panel
         least: digits(panel.least),
         guides: panel.guides.iter().copied().map(digits).collect(),
         cut: panel.cut_at().map(|cut| CutData::of(cut, &panel.unit)),
+        t: panel.t.as_ref().map(|t| Column::of(t, SEEN_BELOW_PEAKS)),
         late: panel.place == Place::Forces,
         series: {
             let steps = if panel.cut { SEEN_BELOW_PEAKS } else { SEEN };
@@ -301,6 +311,12 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         let mut cuts =
             cuts.map(|(cut, (prefix, factor))| cut.map(|cut| CutData::of(cut.scaled(factor), &format!("{prefix}N"))));
         std::array::from_fn(|_| cuts.next().flatten())
+    };
+    let enlarged = |pair: usize| {
+        let [cut, _] = panels.cuts_of_contact(recorder, pair, &means);
+        let (prefix, factor) = panels.force_units[pair][0];
+        let end = panels.enlarged_normal(recorder, pair, &means, cut)? * factor;
+        Some(CutData { limit: digits(end), reach: format!("up to {} {prefix}N", shortest(end, 2)) })
     };
     let contacts = recorder.scenery.contacts.iter().enumerate();
     let all = contacts.flat_map(|(contact, drawn)| (0..drawn.points.len()).map(move |point| (contact, drawn, point)));
@@ -357,8 +373,9 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         rigid: panels.told_of_rigid(""),
         springs: panels.told_of_springs().filter(|_| !recorder.springs.is_empty()),
         struck: format!("{}, which impacts.csv leaves out", panels.told_of_impacts()),
-        impulse_unit: panels.impulse_unit,
+        impulse_units: panels.impulse_units.clone(),
         cuts: (0..recorder.scenery.contacts.len()).map(cuts).collect(),
+        enlarged: (0..recorder.scenery.contacts.len()).map(enlarged).collect(),
         forceless: (0..panels.normal.len()).filter(|pair| !panels.normal[*pair]).collect(),
         frictionless: (0..panels.tangential.len()).filter(|pair| !panels.tangential[*pair]).collect(),
         redundant: (0..panels.redundant.len()).filter(|pair| panels.redundant[*pair].forces).collect(),

@@ -1,7 +1,7 @@
 //! The table of half cycles.
 
 use crate::page::recorder::PageRecorder;
-use crate::page::rocking::{HalfCycle, LeftOutCycles};
+use crate::page::rocking::{HalfCycle, LeftOutCycles, WhyLeftOut};
 use std::fmt::Write;
 use teeter_plot::escaped;
 
@@ -19,18 +19,28 @@ pub(super) fn decimals(values: impl Iterator<Item = f64>, digits: i32) -> usize 
 
 /// Of which blocks the table has no half cycles, and why.
 fn not_listed(left_out: &[LeftOutCycles]) -> String {
-    if left_out.is_empty() {
-        return String::new();
-    }
-    let told = left_out.iter().map(|of| {
-        let near = if of.hits == 0 { "none".to_owned() } else { of.hits.to_string() };
-        format!("{} passed φ = 0 {}, with a corner landing near {near} of these", escaped(&of.body), times(of.count))
+    let passed = |of: &LeftOutCycles| format!("{} passed φ = 0 {}", escaped(&of.body), times(of.count));
+    let few = left_out.iter().filter_map(|of| match of.why {
+        WhyLeftOut::FewLandings(hits) => {
+            let near = if hits == 0 { "none".to_owned() } else { hits.to_string() };
+            Some(format!("{}, with a corner landing near {near} of these", passed(of)))
+        }
+        WhyLeftOut::HardlySwings => None,
     });
-    let told = told.collect::<Vec<_>>().join("; ");
-    format!(
-        "<p id=\"no-half-cycles\" class=\"note\">No half cycles are listed where a corner lands near fewer than half of the passages through φ = 0, as \
-         of what bounces or tumbles: {told}.</p>"
-    )
+    let few = few.collect::<Vec<_>>().join("; ");
+    let hardly = left_out.iter().filter(|of| of.why == WhyLeftOut::HardlySwings).map(passed);
+    let hardly = hardly.collect::<Vec<_>>().join("; ");
+    let told = [
+        (few, "where a corner lands near fewer than half of the passages through φ = 0, as of what bounces or tumbles"),
+        (
+            hardly,
+            "of a block that swings by less than a hundredth of its critical angle against the line between its feet on its beam, though it passes φ = 0 \
+             as the summary counts, against the beam’s undeformed axis",
+        ),
+    ];
+    let told = told.into_iter().filter(|(bodies, _)| !bodies.is_empty());
+    let told: String = told.map(|(bodies, why)| format!("No half cycles are listed {why}: {bodies}. ")).collect();
+    if told.is_empty() { told } else { format!("<p id=\"no-half-cycles\" class=\"note\">{}</p>", told.trim_end()) }
 }
 
 fn times(count: usize) -> String {

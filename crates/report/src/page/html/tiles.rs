@@ -140,8 +140,8 @@ impl Largest {
             () if all.len() > 1 => " of a block",
             () => "",
         };
-        let since = of.stands_from.filter(|t| *t > 0.0);
-        let since = since.map_or_else(String::new, |t| format!(" since it settled at t = {}", as_told(t, "s")));
+        let since =
+            of.settled_at().map_or_else(String::new, |t| format!(" since it settled at t = {}", as_told(t, "s")));
         let path = match () {
             () if of.column.is_some() => format!("verdict.{number}.column_phi_over_alpha"),
             () if summary.max_phi_over_alpha == Some(share) => "max_phi_over_alpha".to_owned(),
@@ -167,12 +167,15 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary) -> String {
     // What overturned or slides has gone past its critical angle, or not come near it.
     let rocks = summary.overturned_at.is_none();
     let largest = Largest::of(summary);
+    let all = &summary.verdict;
     let overturned: Vec<_> = summary.verdict.iter().filter(|of| of.overturned_at.is_some()).collect();
     let overturned = match overturned[..] {
         [of] if summary.verdict.len() > 1 => format!("Overturned at ({})", of.body),
         [_] => "Overturned at".to_owned(),
         _ => "First overturned at".to_owned(),
     };
+    let at_end = summary.penetration_at_end().map_or_else(String::new, |at_end| format!(", {at_end}"));
+    let penetration = format!("Deepest penetration{at_end}");
     // Without contacts their numbers would all be 0.
     let touches = !summary.model.contacts.is_empty() || summary.contact.max_contacts > 0;
     let of_contacts = ["impact_count", "max_penetration"];
@@ -188,8 +191,10 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary) -> String {
             },
             "overturned_at" => (overturned.as_str(), seconds(summary.overturned_at)),
             // What stood on a beam throughout moves as long as that does, also where it is still against it.
-            "rests_from" if summary.verdict.iter().any(BodyVerdict::moves_with_beam) => continue,
-            "rests_from" if summary.rests_from == Some(0.0) => ("All at rest", Some("throughout".to_owned())),
+            "rests_from" if all.iter().any(BodyVerdict::moves_with_beam) => continue,
+            "rests_from" if !all.is_empty() && all.iter().all(BodyVerdict::rests_throughout) => {
+                ("All at rest", Some("throughout".to_owned()))
+            }
             "rests_from" => ("All at rest from", seconds(summary.rests_from)),
             "energy.dissipated" => ("Energy dissipated", Some(lost(summary.energy.dissipated, summary))),
             "energy.lost_by_scheme" => {
@@ -200,7 +205,7 @@ pub(super) fn tiles(values: &Numbers, summary: &Summary) -> String {
             "impact_count" => (impacts.as_str(), Some(summary.impact_count.to_string())),
             "horizon" => ("Predictable up to", seconds(summary.horizon)),
             // As the terminal has it.
-            "max_penetration" => ("Deepest penetration", Some(with_prefix_of(summary.told_penetration(), 2, "m"))),
+            "max_penetration" => (penetration.as_str(), Some(with_prefix_of(summary.told_penetration(), 2, "m"))),
             "energy.largest_residual" => ("Energy residual", Some(scientific(summary.energy.largest_residual))),
             "contact.unconverged_steps" => ("Steps not solved", Some(summary.contact.unconverged_steps.to_string())),
             "contact.max_residual" => ("Contact residual", Some(scientific(summary.contact.max_residual))),

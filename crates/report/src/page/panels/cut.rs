@@ -70,6 +70,22 @@ pub(crate) fn cut_at<'a>(curves: impl Iterator<Item = (bool, &'a [f64])> + Clone
     (limit < all).then(|| Cut { limit, low: values().fold(0.0, f64::min), high: values().fold(0.0, f64::max) })
 }
 
+/// A plot that ends this many times as far as is asked for by what its curves mostly are leaves nothing of that to read.
+const FAR: f64 = 5.0;
+
+/// What curves mostly are has so many times its size as room.
+const ROOM: f64 = 3.0;
+
+/// Where the axis of a second, enlarged plot of these strong curves ends, if the first one, up to `limit`, ends so far above what they mostly are, by the
+/// median of all that are more than `least`, that this can't be read there. None of them ends below what it bears on average.
+pub(crate) fn enlarged<'a>(strong: impl Iterator<Item = &'a [f64]> + Clone, limit: f64, least: f64) -> Option<f64> {
+    let mut sizes: Vec<f64> = strong.clone().flatten().map(|y| y.abs()).collect();
+    sizes.retain(|y| y.is_finite() && *y > least);
+    sizes.sort_by(f64::total_cmp);
+    let end = strong.map(borne).fold(ROOM * sizes.get(sizes.len() / 2)?, f64::max);
+    (limit > FAR * end).then_some(end)
+}
+
 /// How large a curve is on average.
 fn borne(y: &[f64]) -> f64 {
     y.iter().filter(|y| y.is_finite()).map(|y| y.abs()).sum::<f64>() / y.len().max(1) as f64
@@ -98,6 +114,19 @@ mod tests {
         let strong: Vec<f64> = (0..100).map(|k| if (48..53).contains(&k) { 6.0 } else { 1.0 }).collect();
         let cut = cut_at([(true, &rings[..]), (false, &strong[..])].into_iter(), 1e-6).unwrap();
         assert_eq!((cut.limit, cut.high), (6.0, 9.0));
+    }
+
+    #[test]
+    fn what_rests_below_peaks_that_are_not_cut_is_shown_once_more() {
+        // A weight of 47 N, and a blow of 1200 N that isn't cut, as it is a strong curve.
+        let weight: Vec<f64> = (0..100).map(|k| if k == 50 { 1200.0 } else { 47.0 }).collect();
+        let enlarged = |limit: f64| enlarged(std::iter::once(&weight[..]), limit, 1e-3);
+        assert_eq!([enlarged(1200.0), enlarged(600.0)], [Some(141.0), None]);
+        assert_eq!(super::enlarged(std::iter::once(&[0.0; 9][..]), 1200.0, 1e-3), None);
+        // Beside it many hardly press: what bears 58.53 N on average isn't left out for these.
+        let chatter = [0.01; 500];
+        let end = super::enlarged([&weight[..], &chatter[..]].into_iter(), 1200.0, 1e-3).unwrap();
+        assert!((end - 58.53).abs() < 1e-9, "{end}");
     }
 
     #[test]

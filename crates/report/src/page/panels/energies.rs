@@ -60,6 +60,7 @@ impl Panels {
             unit: String::new(),
             least: (1e-6 * most).max(ROUNDING * scale),
             guides: Vec::new(),
+            t: None,
             cut: false,
             place: Place::Forces,
             lines: drawn.into_iter().map(line).collect(),

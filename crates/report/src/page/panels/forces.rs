@@ -115,6 +115,7 @@ impl Panels {
                 unit: String::new(),
                 least: ROUNDING * scale,
                 guides: Vec::new(),
+                t: None,
                 cut: false,
                 place: Place::Forces,
                 lines: lines.collect(),

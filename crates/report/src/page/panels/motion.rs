@@ -131,6 +131,7 @@ impl Panels {
                     unit,
                     least,
                     guides,
+                    t: None,
                     cut: false,
                     place: Place::Motion,
                     lines,
@@ -224,6 +225,7 @@ impl Panels {
             unit: String::new(),
             least: ROUNDING * 1e-2 * span,
             guides: Vec::new(),
+            t: None,
             cut: false,
             place: Place::Motion,
             lines,
@@ -259,13 +261,28 @@ impl Panels {
                     (false, 1) => (Measure::Velocity, "", 1.0),
                     (false, _) => (Measure::Own, "m", 1.0),
                 };
-                let line = |(number, driven, column, _): (usize, &Driven, usize, f64)| {
+                let label = |driven: &Driven| {
                     let axis = COORDINATES[driven.component].symbol;
                     let name = driven.name.replace('.', " ");
-                    let label = if several { format!("{name} {axis}") } else { axis.to_owned() };
-                    Line::of(&self.curves, column, factor, label, number)
+                    if several { format!("{name} {axis}") } else { axis.to_owned() }
                 };
-                let lines = moving.into_iter().map(line).collect();
+                // Where curves have the extremes of many steps, what is smooth is drawn as that.
+                let t = if self.curves.is_thinned() { smooth_times(&self.curves) } else { Vec::new() };
+                let smooth: Option<Vec<Vec<f64>>> = moving
+                    .iter()
+                    .map(|(_, driven, column, _)| smooth(&t, |t| driven.prescribed(t)[k], &self.curves.curve(*column)))
+                    .collect();
+                let lines = moving.into_iter().enumerate().map(|(place, (number, driven, column, _))| {
+                    let label = label(driven);
+                    match &smooth {
+                        Some(smooth) => {
+                            let y = smooth[place].iter().map(|y| factor * y).collect();
+                            Line { label, number, y, is_raw: false, itself: Vec::new(), of: None }
+                        }
+                        None => Line::of(&self.curves, column, factor, label, number),
+                    }
+                });
+                let lines = lines.collect();
                 let what = if several { "Prescribed" } else { "Ground" };
                 let title = format!("{what} {}{title}", if turns { "angular " } else { "" });
                 let title = title.replace("angular displacement", "angle");
@@ -279,6 +296,7 @@ impl Panels {
                     unit: format!("{unit}{}", ["", "/s", "/s²"][k]),
                     least: ROUNDING * most * factor,
                     guides: Vec::new(),
+                    t: smooth.is_some().then_some(t),
                     cut: false,
                     place: Place::Motion,
                     lines,
@@ -393,6 +411,35 @@ impl Panels {
             self.portraits.push(portrait);
         }
     }
+}
+
+/// So many points of a smooth motion, which are enough for its zoomed parts, too.
+const SMOOTH: usize = 2000;
+
+/// What is smooth lies between two of its points on their line, but for this part of its largest value.
+const STRAIGHT: f64 = 5e-3;
+
+/// Times for points of a smooth motion over a run, s.
+fn smooth_times(curves: &Curves) -> Vec<f64> {
+    let borders = curves.borders();
+    let (start, end) = (borders[0], borders[borders.len() - 1]);
+    (0..=SMOOTH).map(|k| start + (end - start) * k as f64 / SMOOTH as f64).collect()
+}
+
+/// A prescribed quantity at these times, beginning with the value of its `curve`, which may have an incline; `None` where these are too few for its course,
+/// as of a record, or of a step: it isn't straight between them, or reaches farther in a step than at any of them.
+fn smooth(t: &[f64], value: impl Fn(f64) -> f64, curve: &[f64]) -> Option<Vec<f64>> {
+    let most = largest(curve);
+    let from = curve.first()? - value(*t.first()?);
+    let values: Vec<f64> = t.iter().map(|t| from + value(*t)).collect();
+    let is_straight = |k: usize| {
+        let middle = from + value(0.5 * (t[k] + t[k + 1]));
+        (middle - 0.5 * (values[k] + values[k + 1])).abs() <= STRAIGHT * most
+    };
+    let ends = |values: &[f64]| values.iter().fold((0.0_f64, 0.0_f64), |(a, b), x| (a.min(*x), b.max(*x)));
+    let ((low, high), (least, greatest)) = (ends(&values), ends(curve));
+    let reaches = (low - least).abs().max((high - greatest).abs()) <= STRAIGHT * most;
+    (reaches && (0..t.len() - 1).all(is_straight)).then_some(values)
 }
 
 /// What the middle of a beam is called where it is that of a span.
@@ -552,6 +599,24 @@ const SAME: f64 = 1e-6;
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_sine_is_smooth_and_steps_and_noise_are_not() {
+        let t: Vec<f64> = (0..=SMOOTH).map(|k| k as f64 / SMOOTH as f64).collect();
+        let curve = |f: &dyn Fn(f64) -> f64| (0..=40_000).map(|k| f(k as f64 / 4e4)).collect::<Vec<_>>();
+        let sine = |t: f64| (2.0 * PI * 10.0 * t).sin();
+        let found = smooth(&t, sine, &curve(&sine)).unwrap();
+        assert!(found.iter().zip(&t).all(|(x, t)| *x == sine(*t)));
+        // With an incline.
+        assert_eq!(smooth(&t, sine, &curve(&|t| 3.0 + sine(t))).unwrap()[0], 3.0);
+        let step = |t: f64| if t < 0.3 { 0.0 } else { 1.0 };
+        assert_eq!(smooth(&t, step, &curve(&step)), None);
+        let fast = |t: f64| (2.0 * PI * 999.0 * t).sin();
+        assert_eq!(smooth(&t, fast, &curve(&fast)), None);
+        // Shorter than the time between two points.
+        let blip = |t: f64| if (t - 0.50013).abs() < 1e-4 { 1.0 } else { 0.0 };
+        assert_eq!(smooth(&t, blip, &curve(&blip)), None);
+    }
 
     #[test]
     fn of_hundreds_of_bounces_the_first_are_strong_and_of_a_few_all() {

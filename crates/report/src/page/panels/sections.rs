@@ -137,6 +137,7 @@ impl Panels {
                 unit: unit.to_owned(),
                 least: 1e-6 * most * factor,
                 guides: Vec::new(),
+                t: None,
                 cut: true,
                 place: Place::Forces,
                 lines,

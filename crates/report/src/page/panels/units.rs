@@ -184,6 +184,22 @@ pub(super) fn contact_sizes(recorder: &PageRecorder, forces: &[Option<ForceCurve
     recorder.scenery.contacts.iter().map(of).collect()
 }
 
+/// The units of the impulses of impacts of each contact: that of the largest of all, in which no number is small, else its own.
+pub(super) fn impulse_units(recorder: &PageRecorder, forces: &[Option<ForceCurve>]) -> Vec<Unit> {
+    let of = |contact: &ContactDrawn| {
+        let own = &forces[contact.first..contact.first + contact.points.len()];
+        largest(own.iter().flatten().flat_map(|forces| &forces.impacts))
+    };
+    let sizes: Vec<f64> = recorder.scenery.contacts.iter().map(of).collect();
+    beside_the_largest(&sizes)
+}
+
+/// The unit of the largest of these for each of them in which it is no small number; else its own.
+fn beside_the_largest(sizes: &[f64]) -> Vec<Unit> {
+    let shared = prefix(sizes.iter().copied().fold(0.0, f64::max));
+    sizes.iter().map(|size| if size * shared.1 < SMALL { prefix(*size) } else { shared }).collect()
+}
+
 /// A force below this part of the largest is none.
 pub(crate) const LEAST_FORCE: f64 = 1e-6;
 
@@ -228,6 +244,12 @@ mod tests {
         // What was not among those that chose.
         let units = Units::of(LengthUnit::Metre, &[(Force, 5e3), (Force, 300.0)]);
         assert_eq!([2e3, 200.0, 0.1].map(|size| units.unit(Force, size).0), ["k", "k", "m"]);
+    }
+
+    #[test]
+    fn a_small_impulse_is_in_a_unit_of_its_own() {
+        let names = |sizes: &[f64]| beside_the_largest(sizes).into_iter().map(|unit| unit.0).collect::<Vec<_>>();
+        assert_eq!(names(&[2.9, 2e-4, 0.3, 0.0]), ["", "µ", "", ""], "not 0.0002 N s");
     }
 
     #[test]
