@@ -574,3 +574,28 @@ fn a_penetration_that_stays_is_told_to() {
     assert!(state.q[1] > 0.05 && flies.summary.max_penetration > 1e-5);
     assert_eq!(flies.summary.penetration_at_end(), None);
 }
+
+/// Two beams and no block: the second is bent by a load, the first isn't; by their elements and by modes, of supports that move, too.
+#[test]
+fn of_beams_alone_the_deflections_are_their_own() {
+    let beam = |name: &str, more: &str| {
+        format!(
+            "[beam.{name}]\nsection = 'direct'\nbending_stiffness = '40 N m^2'\nmass_per_length = '0.4 kg/m'\nspan = '1 m'\nelements = 8\n{more}"
+        )
+    };
+    let load = "[load.step]\nbeam = 'loaded'\nat = '50 cm'\nforce = '-8 N'\n";
+    for model in ["", "model = 'modes'\nmodes = { count = 4 }\n"] {
+        let text =
+            format!("[time]\nend = '0.2 s'\nstep = '100 us'\n{}{}{load}", beam("idle", model), beam("loaded", model));
+        let found = run("beams-alone", &text).summary.deflections;
+        let of = |name: &str| found.iter().find(|of| of.beam == name).unwrap().w;
+        assert_eq!(of("idle"), 0.0, "{model}");
+        // Twice the static 8 N (1 m)³/(48 EI).
+        assert!((of("loaded") / (-2.0 * 8.0 / (48.0 * 40.0)) - 1.0).abs() < 0.1, "{model}: {}", of("loaded"));
+
+        let moved = beam("shaken", model) + "motion = { acceleration = ['0 m/s^2', '3 m/s^2'] }\n";
+        let of = run("beam-moved", &format!("[time]\nend = '0.2 s'\nstep = '100 us'\n{moved}")).summary.deflections;
+        // Twice the static 5 q l⁴/(384 EI) of q = 0.4 kg/m · 3 m/s².
+        assert!((of[0].w / (-2.0 * 5.0 * 1.2 / (384.0 * 40.0)) - 1.0).abs() < 0.1, "{model}: {}", of[0].w);
+    }
+}
