@@ -289,7 +289,7 @@ enum Command {
         measured: measured::MeasuredOptions,
         /// What the measured angle shows when the block stands upright, such as "0.2 deg"
         #[arg(long, value_name = "ANGLE", default_value = "0 rad", hide_default_value = true)]
-        #[arg(value_parser = measured::angle, allow_hyphen_values = true)]
+        #[arg(value_parser = measured::offset, allow_hyphen_values = true)]
         offset: f64,
         /// Folder for the results (default: that of the run with `-compare`)
         #[arg(long, value_name = "DIR")]
@@ -318,7 +318,7 @@ enum Command {
         vary: Vec<teeter_study::fit::FitKey>,
         /// What the measured angle shows when the block stands upright, such as "0.2 deg" (default:
         /// fitted)
-        #[arg(long, value_name = "ANGLE", value_parser = measured::angle, allow_hyphen_values = true)]
+        #[arg(long, value_name = "ANGLE", value_parser = measured::offset, allow_hyphen_values = true)]
         offset: Option<f64>,
         /// Number of values tried all over the ranges first (default: 16 for each key, and 16 more)
         #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]

@@ -93,8 +93,18 @@ fn time(text: &str) -> Result<f64, String> {
 }
 
 /// An angle with its unit.
-pub(crate) fn angle(text: &str) -> Result<f64, String> {
+fn angle(text: &str) -> Result<f64, String> {
     quantity::parse(text, Dimension::ANGLE).map_err(|error| error.to_string())
+}
+
+/// The angle that a block standing upright seems to have.
+pub(crate) fn offset(text: &str) -> Result<f64, String> {
+    let offset = angle(text)?;
+    // A half turn may be written with less digits than π has.
+    if offset.abs() > std::f64::consts::PI * (1.0 + 1e-3) {
+        return Err("an angle from -180 deg to 180 deg is expected".to_owned());
+    }
+    Ok(offset)
 }
 
 fn sign(text: &str) -> Result<Sign, String> {

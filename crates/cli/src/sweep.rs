@@ -3,7 +3,7 @@
 use crate::console::{Console, print};
 use crate::interrupt;
 use crate::progress::CaseBar;
-use crate::render::{Presenter, refusal};
+use crate::render::Presenter;
 use crate::run::Exit;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use teeter_report::Results;
-use teeter_run::SceneSource;
+use teeter_run::{LoadError, SceneSource};
 use teeter_scenario::diagnostic::Diagnostics;
 use teeter_study::sweep::{
     COARSE_ROWS, Ensemble, FIGURE_FILES, FILES, IDENTITY, JOURNAL, Journal, JournalError, RESULTS, Shard, Sweep,
@@ -232,7 +232,7 @@ fn run(console: Console, study: &Study, results: &Results, mut journal: Journal,
         .and_then(|()| write_parquet(results, &study.sweep))
         .and_then(|()| Tally::of(results.folder(), &study.sweep));
     match written {
-        // A mistake that concerns all cases, such as a value without its unit, is told in quiet runs, too.
+        // A mistake that concerns all cases is told in quiet runs, too.
         Ok(tally) if tally.incomplete == tally.cases && shard == Shard::ALL => {
             let none = if total == 1 {
                 "the only case has no result".to_owned()
@@ -364,12 +364,13 @@ fn prepare(path: &Path, shard: Shard) -> Result<Study, String> {
     let present = |found: &Diagnostics| Presenter::new(&text).all(found);
     let sweep = Sweep::read(&text, &name, &listed).map_err(|found| present(&found))?;
     let scene = SceneSource::file(folder.join(sweep.scene()));
-    let bytes = scene.read().map_err(|error| refusal(&error))?.into_owned();
+    let unreadable = |error: LoadError| present(&Sweep::unreadable_scene(&text, &name, &error.to_string()));
+    let bytes = scene.read().map_err(unreadable)?.into_owned();
     let scene_text = String::from_utf8_lossy(&bytes).into_owned();
     let mut companions = scene.companions();
     let settings = sweep.settings_with_files();
     let source = StudyScene::with_files_of(bytes, scene.name(), scene.stem(), settings, &mut companions);
-    sweep.check_keys(&source, &name).map_err(|found| present(&found))?;
+    sweep.check_keys(&source, &text, &name).map_err(|found| present(&found))?;
     sweep.check_scene(&source).map_err(|found| Presenter::new(&scene_text).all(&found))?;
     sweep.check_outputs(&source, &text, &name).map_err(|found| present(&found))?;
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();

@@ -552,6 +552,21 @@ fn seen_on_ground(name: &str) -> (PathBuf, Vec<[f64; 4]>) {
 }
 
 #[test]
+fn an_offset_of_more_than_half_a_turn_is_refused() {
+    for (command, offset, is_fine) in [
+        ("compare", "400 deg", false),
+        ("compare", "-181 deg", false),
+        ("fit", "4 rad", false),
+        ("compare", "-180 deg", true),
+    ] {
+        let output = teeter(Path::new("."), &[command, "none", "none.csv", "--offset", offset]);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert_eq!(!told.contains("an angle from -180 deg to 180 deg is expected"), is_fine, "{offset}: {told}");
+    }
+}
+
+#[test]
 fn the_offset_that_is_told_is_that_of_the_rows_for_which_it_promises() {
     let (folder, frames) = seen_on_ground("promise");
     // The held block stood 0.6° off, and moved 0.2° off.

@@ -62,11 +62,40 @@ fn a_folder_that_a_run_writes_to_is_refused_to_a_second_one() {
     }
     let holder = format!("process {} is writing results to out", first.id());
     refused(&at, &["run", "scene.toml", "--out", "out", "--force"], &holder);
+    // Neither --force nor --resume would be a way.
+    refused(&at, &["run", "scene.toml", "--out", "out"], &holder);
     first.kill().unwrap();
     first.wait().unwrap();
     // What it left is no reason to wait for ever.
     done(&at, &["run", "scene.toml", "--out", "out", "--force"]);
     assert!(!at.join("out/.teeter.lock").exists());
+}
+
+#[test]
+fn a_folder_that_a_study_writes_to_is_refused_to_a_second_one() {
+    let at = folder("two-studies");
+    let sweep = "scene = \"scene.toml\"\n[grid]\ntime.end = [\"100 s\", \"101 s\"]\ntime.step = [\"1 us\"]\n";
+    std::fs::write(at.join("sweep.toml"), sweep).unwrap();
+    let mut first = Command::new(env!("CARGO_BIN_EXE_teeter"))
+        .current_dir(&at)
+        .args(["sweep", "sweep.toml", "--out", "out"])
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    for _ in 0..2000 {
+        if at.join("out/journal.csv").exists() {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let holder = format!("process {} is writing results to out", first.id());
+    for options in [&[][..], &["--resume"], &["--force"]] {
+        let arguments = [&["sweep", "sweep.toml", "--out", "out"], options].concat();
+        refused(&at, &arguments, &holder);
+    }
+    first.kill().unwrap();
+    first.wait().unwrap();
+    refused(&at, &["sweep", "sweep.toml", "--out", "out"], "--resume goes on with it");
 }
 
 #[test]

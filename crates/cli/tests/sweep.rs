@@ -293,14 +293,18 @@ fn a_scene_that_no_case_can_be_run_with_is_refused_with_its_place() {
 fn what_is_wrong_in_a_sweep_file_is_told_with_its_place_and_a_remedy() {
     for (name, text, says) in [
         ("nothing", "", &["scene: missing: which scene varies?"][..]),
-        ("scene", "scene = \"none.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n", &["none.toml", "no such file"]),
+        (
+            "scene",
+            "scene = \"none.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n",
+            &["none.toml", "no such file", "sweep.toml:1", "relative to the sweep file"],
+        ),
         ("varies", "scene = \"rocking.toml\"\n", &["nothing varies", "[grid]"]),
         ("table", "scene = \"rocking.toml\"\n[gird]\na = [1]\n", &["sweep.toml:2", "did you mean `grid`?"]),
         ("toml", "scene = \n", &["not valid TOML", "sweep.toml:1"]),
         (
             "key",
             "scene = \"rocking.toml\"\n[grid]\ncontact.feet.frictoin = [1]\n",
-            &["contact.feet.frictoin", "did you mean `contact.feet.friction`?"],
+            &["sweep.toml:3", "contact.feet.frictoin", "did you mean `contact.feet.friction`?"],
         ),
         (
             "units",
@@ -346,7 +350,39 @@ fn what_is_wrong_in_a_sweep_file_is_told_with_its_place_and_a_remedy() {
         (
             "twice",
             "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n[zip]\nblock.rocker.tilt = [\"1 deg\"]\n",
-            &["varies twice"],
+            &["varies twice", "sweep.toml:5"],
+        ),
+        (
+            "many",
+            "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = { from = \"1 deg\", to = \"2 deg\", count = 20000 }\n\
+                contact.feet.friction = { from = 0.1, to = 0.5, count = 10000 }\n",
+            &["block.rocker.tilt: more than 100000000 cases", "sweep.toml:3"],
+        ),
+        (
+            "searched",
+            "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"1 deg\"]\n[find]\nkey = \"block.rocker.tilt\"\nlow = \"1 deg\"\n\
+                high = \"2 deg\"\ntolerance = \"0.1 deg\"\nuntil = \"overturned\"\n",
+            &["varies and is searched", "sweep.toml:5"],
+        ),
+        (
+            "no-unit",
+            "scene = \"rocking.toml\"\n[grid]\ncontact.feet.friction = [0.3]\nblock.rocker.tilt = [1, 2]\n",
+            &["block.rocker.tilt = [1, 2]", "sweep.toml:4", "an angle needs a unit"],
+        ),
+        (
+            "no-number",
+            "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"3 deg\"]\n[zip]\ncontact.feet.friction = [nan, -1]\n",
+            &["contact.feet.friction = [nan, -1]", "sweep.toml:5"],
+        ),
+        (
+            "random-unit",
+            "scene = \"rocking.toml\"\n[random]\ncount = 3\nblock.rocker.tilt = { uniform = [\"1 m\", \"2 m\"] }\n",
+            &["block.rocker.tilt", "sweep.toml:4"],
+        ),
+        (
+            "find-unit-of-key",
+            "scene = \"rocking.toml\"\n[find]\nkey = \"block.rocker.tilt\"\nlow = 1\nhigh = 2\ntolerance = 0.1\nuntil = \"overturned\"\n",
+            &["block.rocker.tilt", "sweep.toml:3"],
         ),
         (
             "find",
@@ -369,13 +405,13 @@ fn what_is_wrong_in_a_sweep_file_is_told_with_its_place_and_a_remedy() {
             "find-until",
             "scene = \"rocking.toml\"\n[find]\nkey = \"block.rocker.tilt\"\nlow = \"1 deg\"\nhigh = \"2 deg\"\n\
                 tolerance = \"0.1 deg\"\nuntil = { output = \"none\", above = 2 }\n",
-            &["find.until", "there is no output `none`"],
+            &["find.until", "there is no output `none`", "sweep.toml:7"],
         ),
         (
             "find-key",
             "scene = \"rocking.toml\"\n[find]\nkey = \"block.rocker.titl\"\nlow = \"1 deg\"\nhigh = \"2 deg\"\n\
                 tolerance = \"0.1 deg\"\nuntil = \"overturned\"\n",
-            &["block.rocker.titl", "did you mean"],
+            &["block.rocker.titl", "did you mean", "sweep.toml:3"],
         ),
         (
             "fragility",
@@ -385,7 +421,12 @@ fn what_is_wrong_in_a_sweep_file_is_told_with_its_place_and_a_remedy() {
         (
             "fragility-column",
             "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n[fragility]\nevent = \"overturned\"\nintensity = \"x\"\n",
-            &["fragility.intensity", "no column `x`", "block.rocker.tilt, overturned_at"],
+            &["fragility.intensity", "sweep.toml:6", "no column `x`", "block.rocker.tilt, overturned_at"],
+        ),
+        (
+            "distribution-column",
+            "scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n[distribution]\nof = \"x\"\n",
+            &["distribution.of", "no column `x`", "sweep.toml:5"],
         ),
         (
             "distribution",
@@ -714,6 +755,8 @@ fn bands_are_quantiles_of_the_motions() {
         ("of = \"rocker.phi\"\nuntil = 5", "with its unit"),
         ("of = \"rocker.phi\"\nuntil = \"5 kg\"", "bands.until"),
         ("until = \"5 s\"", "bands.of"),
+        ("of = \"rocker.phi\"\nuntil = \"50 s\"", "bands.until = \"50 s\""),
+        ("of = \"rocker.phi\"\nuntil = \"50 s\"", "after the end of the runs, t = "),
         ("of = \"rocker.phi\"\nuntil = \"50 ms\"\ntimes = 0", "bands.times"),
     ] {
         let sweep = format!("scene = \"rocking.toml\"\n[grid]\nblock.rocker.tilt = [\"2 deg\"]\n[bands]\n{text}\n");

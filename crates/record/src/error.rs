@@ -118,6 +118,17 @@ pub enum RecordError {
         /// The number found.
         found: usize,
     },
+    /// A last number that is only the beginning of one written like all others.
+    #[error(
+        "line {line}: the last number, `{number}`, is shorter than all others, which are written alike: the file was cut within it; get \
+         the whole file again"
+    )]
+    CutNumber {
+        /// The line.
+        line: usize,
+        /// The number as it stands there, shortened.
+        number: String,
+    },
     /// A row of a table with too few or too many columns.
     #[error("line {line}: {found} column{}, but {wanted}", if *found == 1 { "" } else { "s" })]
     Columns {

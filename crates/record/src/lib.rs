@@ -32,6 +32,7 @@
 
 mod corrections;
 mod cosmos;
+mod cut;
 mod decimal;
 mod error;
 mod esm;

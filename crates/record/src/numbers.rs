@@ -5,7 +5,7 @@ use crate::error::{RecordError, shown};
 /// Hint for two numbers without a separator.
 const RUN_TOGETHER: &str = "; numbers must be separated or begin with a sign";
 
-/// Calls `each` for every number of a line. Numbers are separated by blanks or commas, or adjoin
+/// Calls `each` with the text and the value of every number of a line. Numbers are separated by blanks or commas, or adjoin
 /// where a sign starts the next one or where a point follows an exponent (of two digits then).
 ///
 /// # Errors
@@ -13,7 +13,7 @@ const RUN_TOGETHER: &str = "; numbers must be separated or begin with a sign";
 pub(crate) fn free(
     line: usize,
     text: &str,
-    mut each: impl FnMut(f64) -> Result<(), RecordError>,
+    mut each: impl FnMut(&str, f64) -> Result<(), RecordError>,
 ) -> Result<(), RecordError> {
     let mut rest = text;
     loop {
@@ -32,7 +32,7 @@ pub(crate) fn free(
         let exponent = number.contains(['e', 'E', 'd', 'D']);
         let begins = exponent && next.is_some_and(|c| c == '.' || c.is_ascii_digit());
         let value = if ends || begins { one(number) } else { None };
-        each(value.ok_or_else(bad)?)?;
+        each(number, value.ok_or_else(bad)?)?;
         rest = after;
     }
 }
@@ -80,7 +80,7 @@ mod tests {
 
     fn read(text: &str) -> Result<Vec<f64>, String> {
         let mut values = Vec::new();
-        free(7, text, |value| {
+        free(7, text, |_, value| {
             values.push(value);
             Ok(())
         })

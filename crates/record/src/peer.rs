@@ -4,6 +4,7 @@
 //! The line with number and step has two forms: `NPTS=  5437, DT=   .0050 SEC`, in any case and
 //! spacing, with or without the unit, and in older files `5437   0.0050   NPTS, DT`.
 
+use crate::cut::CutWatch;
 use crate::error::{RecordError, shown};
 use crate::format::Format;
 use crate::numbers;
@@ -41,8 +42,9 @@ pub(crate) fn read(text: &str) -> Result<Record, RecordError> {
     };
     let (announced, dt) = count_and_step(at, &numbers)?;
     let mut accelerations = Vec::new();
+    let mut watch = CutWatch::default();
     for (line, text) in lines {
-        numbers::free(line, text, |value| {
+        numbers::free(line, text, |number, value| {
             if accelerations.len() == MOST_VALUES {
                 return Err(RecordError::TooMany);
             }
@@ -51,11 +53,15 @@ pub(crate) fn read(text: &str) -> Result<Record, RecordError> {
                 return Err(RecordError::Value { line, value });
             }
             accelerations.push(scaled);
+            watch.add(line, number);
             Ok(())
         })?;
     }
     if accelerations.len() != announced {
         return Err(RecordError::Count { line: at, announced, found: accelerations.len() });
+    }
+    if let Some((line, number)) = watch.cut() {
+        return Err(RecordError::CutNumber { line, number: shown(&number) });
     }
     // The first line names the database, the second event, station and component.
     let description = words.get(1).or(words.first()).copied().unwrap_or_default();
@@ -153,6 +159,47 @@ mod tests {
             message,
             "line 3: `FURLONGS` is not a known unit of acceleration: m/s^2, cm/s^2, mm/s^2, gal, g, gn"
         );
+    }
+
+    #[test]
+    fn a_file_cut_within_its_last_number_is_refused() {
+        let head = format!("{HEAD}NPTS= 6, DT= .01\n");
+        let whole =
+            format!("{head}  .1234567E-03 -.2345678E-02\n  .3456789E-03 -.4567891E-03  .1234567E-04\n -.5678912E-04");
+        assert!(read(&whole).is_ok());
+        for cut in 1..=10 {
+            let text = &whole[..whole.len() - cut];
+            for text in [text.to_owned(), format!("{text}\n")] {
+                let message = read(&text).unwrap_err();
+                let expected = if cut == 2 || cut == 3 { "is not a number" } else { "line 7: the last number, `-.5" };
+                assert!(message.contains(expected), "{cut}: {message}");
+            }
+        }
+        let message = read(&whole[..whole.len() - 4]).unwrap_err();
+        assert!(message.contains("`-.5678912`") && message.contains("get the whole file again"), "{message}");
+        // Without exponents many numbers of one form tell it.
+        let fixed = |count: usize, last: &str| {
+            format!("{HEAD}NPTS= {}, DT= .01\n{}{last}\n", count + 1, " 0.01234 -0.12345\n".repeat(count / 2))
+        };
+        assert!(read(&fixed(100, "0.01")).unwrap_err().starts_with("line 55: the last number, `0.01`, is shorter"));
+        assert!(read(&fixed(100, "0.01234")).is_ok());
+    }
+
+    #[test]
+    fn free_numbers_may_end_with_a_short_one() {
+        let values = |values: &str| {
+            let count = values.split_whitespace().count();
+            read(&format!("{HEAD}NPTS= {count}, DT= .01\n{values}\n"))
+        };
+        for free in [
+            "0.25 0.75 0.35 0.15 0.5",
+            "1.25e-3 7.5e-3 -1.25e-3 2.25e-3 1.5",
+            ".1234E-03 .1234E-03 .1234E-03 .1234E-03 0",
+            "1.2E-03 1.4",
+            ".1234 .1234E-03 .1234E-03 .1234E-03 .1234E-03 .1234E-03",
+        ] {
+            assert!(values(free).is_ok(), "{free}: {:?}", values(free));
+        }
     }
 
     #[test]

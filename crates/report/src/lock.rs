@@ -56,6 +56,14 @@ impl FolderLock {
         }
         Err(io_error(io::ErrorKind::ResourceBusy.into()))
     }
+    /// That another holds the lock of `folder`, without taking it.
+    pub(crate) fn holding(folder: &Path, name: &str) -> Option<ResultsError> {
+        let path = folder.join(name);
+        let mut file = path.is_file().then(|| open(&path).ok()).flatten()?;
+        // A shared lock, which lasts until the end of this function, is refused while there is an exclusive one.
+        matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock))
+            .then(|| ResultsError::InUse { folder: folder.to_owned(), holder: holder(&mut file) })
+    }
 }
 
 /// Never through a link, which might lead out of the folder.

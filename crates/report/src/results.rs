@@ -164,8 +164,14 @@ impl Results {
     /// What [`Results::create_of`] would remove; changes nothing, so that who takes long can ask before and create after.
     ///
     /// # Errors
-    /// If the path is not a directory, leads out of itself by a link, or holds results and `force` isn't given.
+    /// If the path is not a directory, leads out of itself by a link, or holds results and `force` isn't given; who is writing there is
+    /// told first, as neither `force` nor going on is a way then.
     pub fn replaced(files: &[&str], folder: &Path, force: bool) -> Result<Vec<PathBuf>, ResultsError> {
+        Self::old_files(files, folder, force).map_err(|error| FolderLock::holding(folder, LOCK).unwrap_or(error))
+    }
+
+    /// As [`Results::replaced`], whoever holds the lock.
+    fn old_files(files: &[&str], folder: &Path, force: bool) -> Result<Vec<PathBuf>, ResultsError> {
         check_folder(folder)?;
         if !folder.exists() {
             return Ok(Vec::new());
@@ -331,7 +337,7 @@ impl Reserved {
     pub fn create(mut self) -> Result<Results, ResultsError> {
         let folder = self.folder.clone();
         // Somebody may have written there before the lock was ours.
-        let old = Results::replaced(self.files, &folder, self.force)?;
+        let old = Results::old_files(self.files, &folder, self.force)?;
         // Before anything old goes, it has to be sure that something new can come.
         let trial = temporary(&folder.join("trial"));
         remove_if_there(&trial)?;

@@ -146,6 +146,14 @@ impl ParsedScene {
         resolve::resolve(document, stem, read).map_err(|found| in_order(found, sets))
     }
 
+    /// What is wrong with the texts of the scene and of `sets`, each value by itself: its syntax, its unit, its range.
+    #[must_use]
+    pub fn errors_of_text(&self, sets: &[(String, String)]) -> diagnostic::Diagnostics {
+        let decode::Decoded { mut found, .. } = self.0.decode(sets);
+        found.0.retain(|finding| finding.severity == diagnostic::Severity::Error);
+        found
+    }
+
     /// The scene alone, as [`Self::load`] finds it, for a study of many of them: warnings and notes are left out, and what earlier
     /// scenes of this text and the same files have in common with it is taken from `shared`.
     ///

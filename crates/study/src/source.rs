@@ -105,6 +105,11 @@ impl StudyScene {
         self.parsed()?.load(&self.stem, &self.sets_of(setting), &mut |path| self.file(path))
     }
 
+    /// What is wrong with the texts of the scene and of a setting, each value by itself.
+    pub fn errors_of_text(&self, setting: &Setting) -> Diagnostics {
+        self.parsed().map_or_else(|found| found, |parsed| parsed.errors_of_text(&self.sets_of(setting)))
+    }
+
     /// The scene with a setting without warnings and notes: what of it scenes share is made once.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 
 use super::Sweep;
 use super::figures::Bands;
+use super::file::SCENE_EXAMPLE;
 use super::find::Find;
 use super::output::Output;
 use super::spec::{Node, Reader, entries};
@@ -16,6 +17,8 @@ use teeter_scenario::suggest::nearest;
 const FIXED_PARTS: [&str; 2] = ["contact", "energy"];
 /// Cases that are looked at before a scene is said to be wrong in all of them.
 const CASES_TRIED: u64 = 16;
+/// Values of a key that are looked at before it is said to be wrong in all of them.
+const VALUES_TRIED: u64 = 1000;
 /// Values of a summary that the machine decides.
 const CLOCKED: [&str; 2] = ["wall_seconds", "us_per_step"];
 /// How many columns a message lists.
@@ -29,31 +32,69 @@ struct Offered {
     summary: Summary,
 }
 
+/// Up to `most` of so many numbers from 0 on, all over them, the first and the last among them.
+fn spread(count: u64, most: u64) -> impl Iterator<Item = u64> {
+    let tried = count.clamp(1, most);
+    let place = move |k: u64| u128::from(count.saturating_sub(1)) * u128::from(k) / u128::from((tried - 1).max(1));
+    (0..tried).map(move |k| u64::try_from(place(k)).unwrap_or(0))
+}
+
 impl Sweep {
-    /// Refuses keys that the scene can't have, which would make every case a refused one.
+    /// That the scene can't be read, and why, at its name in the sweep file, whose text is `text`.
+    #[must_use]
+    pub fn unreadable_scene(text: &str, file: &str, why: &str) -> Diagnostics {
+        let mut reader = Reader::new(file, text);
+        reader.wrong("scene", None, why, SCENE_EXAMPLE);
+        match reader.root() {
+            Ok(root) => reader.placed_in(root.get_ref()),
+            Err(found) => found,
+        }
+    }
+
+    /// Refuses keys that the scene can't have, and those none of whose values can be read (of up to 1000, all over them), as they lack a unit
+    /// or are out of range whatever the rest of the scene: every case would be a refused one. `text` is that of the sweep file, for the places of the
+    /// findings.
     ///
     /// # Errors
     /// What is wrong with them.
-    pub fn check_keys(&self, source: &StudyScene, file: &str) -> Result<(), Diagnostics> {
-        let mut wrong = Diagnostics::default();
-        let searched = self.find().map(|find| (find.key.clone(), find.low_text()));
-        for (key, value) in self.case(0).into_iter().chain(searched) {
-            if matches!(keys::find(&key), Some(PathTarget::Key(..))) {
-                continue;
-            }
-            let Err(found) = source.load(&Setting::none().set(key.clone(), value)) else { continue };
-            let about = |finding: &&Diagnostic| finding.set.as_ref().is_some_and(|set| set.starts_with(&key));
-            wrong.0.extend(found.iter().find(about).cloned().map(|finding| Diagnostic {
+    pub fn check_keys(&self, source: &StudyScene, text: &str, file: &str) -> Result<(), Diagnostics> {
+        let mut reader = Reader::new(file, text);
+        let root = reader.root()?;
+        for key in self.keys().into_iter().chain(self.find().map(|find| find.key.as_str())) {
+            let is_known = matches!(keys::find(key), Some(PathTarget::Key(..)));
+            let refused = |value: String| {
+                let setting = Setting::none().set(key.to_owned(), value);
+                let found = if is_known { source.errors_of_text(&setting) } else { source.load(&setting).err()? };
+                found.0.into_iter().find(|finding| finding.set.as_ref().is_some_and(|set| set.starts_with(key)))
+            };
+            let tried = if is_known { VALUES_TRIED } else { 1 };
+            // As soon as one value isn't refused, there is nothing to tell.
+            let all: Option<Vec<Diagnostic>> = self.values_of(key, tried).map(refused).collect();
+            let first = all.and_then(|all| all.into_iter().next());
+            reader.found.0.extend(first.map(|finding| Diagnostic {
                 file: file.to_owned(),
                 set: None,
                 position: None,
                 span: None,
                 written: None,
-                path: key.clone(),
+                path: key.to_owned(),
                 ..finding
             }));
         }
-        if wrong.has_errors() { Err(wrong) } else { Ok(()) }
+        if reader.found.has_errors() { Err(reader.placed_in(root.get_ref())) } else { Ok(()) }
+    }
+
+    /// Up to `most` values of a key, all over those that it takes; of one that is searched both ends.
+    fn values_of<'s>(&'s self, key: &'s str, most: u64) -> Box<dyn Iterator<Item = String> + 's> {
+        if let Some(find) = self.find().filter(|find| find.key == key) {
+            return Box::new([find.low_text(), find.high_text()].into_iter());
+        }
+        if let Some(values) = self.listed(key) {
+            let at = move |place| values.get(usize::try_from(place).ok()?).cloned();
+            return Box::new(spread(values.len() as u64, most).filter_map(at));
+        }
+        let of_case = move |case| self.case(case).into_iter().find(|(name, _)| name == key).map(|(_, value)| value);
+        Box::new(spread(self.samples(), most).filter_map(of_case))
     }
 
     /// Refuses a scene that can't be run whatever the values: of up to 16 cases all over the study, the first and the last among them, each
@@ -62,12 +103,10 @@ impl Sweep {
     /// # Errors
     /// These errors; their places are in the scene file.
     pub fn check_scene(&self, source: &StudyScene) -> Result<(), Diagnostics> {
-        let cases = self.cases().clamp(1, CASES_TRIED);
         let low = self.find().map(Find::low_text);
         let mut common: Option<Vec<Diagnostic>> = None;
-        for k in 0..cases {
-            let number = u128::from(self.cases().saturating_sub(1)) * u128::from(k) / u128::from((cases - 1).max(1));
-            let setting = self.setting(u64::try_from(number).unwrap_or(0), low.as_deref());
+        for number in spread(self.cases(), CASES_TRIED) {
+            let setting = self.setting(number, low.as_deref());
             let Err(Diagnostics(found)) = source.load(&setting) else { return Ok(()) };
             let of_text = |one: &Diagnostic| one.severity == Severity::Error && one.set.is_none();
             let known = |one: &Diagnostic| common.as_ref().is_none_or(|common| common.contains(one));
@@ -101,8 +140,13 @@ impl Sweep {
         let of_bands: Vec<Output> = self.wanted().bands.iter().flat_map(Bands::outputs).collect();
         let end = offered.iter().map(|offered| offered.end).fold(0.0, f64::max);
         let end_is_known = !offered.is_empty() && !self.case(0).iter().any(|(key, _)| key == "time.end");
+        let late = |output: &Output| past_end(output, end).filter(|_| end_is_known);
+        if let Some(Missing { remedy, .. }) = of_bands.last().and_then(late) {
+            let rule = format!("after the end of the runs, t = {end} s");
+            reader.wrong("bands.until", None, &rule, remedy);
+        }
         let missing =
-            |output: &Output| missing(output, &offered).or_else(|| past_end(output, end).filter(|_| end_is_known));
+            |output: &Output| missing(output, &offered).or_else(|| late(output).filter(|_| !of_bands.contains(output)));
         for output in self.outputs() {
             let Some(Missing { rule, meant, remedy }) = missing(output) else { continue };
             let is_of_bands = of_bands.contains(output);
@@ -120,7 +164,7 @@ impl Sweep {
                 finding.did_you_mean = meant;
             }
         }
-        if reader.found.has_errors() { Err(reader.into_findings()) } else { Ok(()) }
+        if reader.found.has_errors() { Err(reader.placed_in(root.get_ref())) } else { Ok(()) }
     }
 
     /// `None` where the case is refused.

@@ -110,7 +110,7 @@ impl Sweep {
         if !reader.found.has_errors() {
             sweep.check(&mut reader);
         }
-        if reader.found.has_errors() { Err(reader.into_findings()) } else { Ok(sweep) }
+        if reader.found.has_errors() { Err(reader.placed_in(root.get_ref())) } else { Ok(sweep) }
     }
 
     /// The first case, and changes of it that take each key through all values that are not numbers:
@@ -173,8 +173,15 @@ impl Sweep {
         }
         if self.checked_cases().is_none_or(|cases| cases > MOST_CASES) {
             let rule = format!("more than {MOST_CASES} cases");
-            reader.wrong("", None, &rule, "use fewer values, or random samples of the same keys");
+            reader.wrong(self.longest(), None, &rule, "use fewer values, or random samples of the same keys");
         }
+    }
+
+    /// What has most values, by its path.
+    fn longest(&self) -> &str {
+        let random = self.samples.iter().map(|samples| (samples.count, "random.count"));
+        let axes = self.axes.iter().filter_map(|axis| Some((axis.len(), axis.keys.first()?.as_str())));
+        random.chain(axes).max_by_key(|(count, _)| *count).map_or("", |(_, path)| path)
     }
 
     /// What the column of a key or an output holds if it has no numbers.
@@ -204,6 +211,17 @@ impl Sweep {
         fixed.chain(random).map(String::as_str).collect()
     }
 
+    /// The values of a key that aren't random.
+    pub(super) fn listed(&self, key: &str) -> Option<&[String]> {
+        let mut pairs = self.axes.iter().flat_map(|axis| axis.keys.iter().zip(&axis.values));
+        pairs.find(|(name, _)| *name == key).map(|(_, values)| values.as_slice())
+    }
+
+    /// Number of random samples of each combination.
+    pub(super) fn samples(&self) -> u64 {
+        self.samples.as_ref().map_or(1, |samples| samples.count)
+    }
+
     /// The outputs, in the order of the columns.
     #[must_use]
     pub fn outputs(&self) -> &[Output] {
@@ -211,8 +229,7 @@ impl Sweep {
     }
 
     fn checked_cases(&self) -> Option<u64> {
-        let samples = self.samples.as_ref().map_or(1, |samples| samples.count);
-        self.axes.iter().try_fold(samples, |cases, axis| cases.checked_mul(axis.len()))
+        self.axes.iter().try_fold(self.samples(), |cases, axis| cases.checked_mul(axis.len()))
     }
 
     /// Number of cases: all combinations of the axes, each with all samples.
@@ -297,4 +314,4 @@ impl Sweep {
 const LAST_COLUMNS: [&str; 4] = ["status", "unsolved_steps", "warnings", "error"];
 /// Names that outputs can't have.
 const RESERVED: [&str; 5] = ["case", "status", "unsolved_steps", "warnings", "error"];
-const SCENE_EXAMPLE: &str = "name it relative to the sweep file, such as scene = \"rocking.toml\"";
+pub(super) const SCENE_EXAMPLE: &str = "name it relative to the sweep file, such as scene = \"rocking.toml\"";

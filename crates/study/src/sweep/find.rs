@@ -101,6 +101,11 @@ impl Find {
         self.text(self.low.value)
     }
 
+    /// The upper end.
+    pub(crate) fn high_text(&self) -> String {
+        self.text(self.high.value)
+    }
+
     /// Whether values between the ends are run before the bisection.
     pub(crate) fn scans(&self) -> bool {
         self.scan > 0
@@ -187,7 +192,7 @@ impl Found {
     /// Why there is no limit.
     pub(crate) fn no_limit(&self, find: &Find) -> Option<String> {
         let state = if self.at_low { "true" } else { "false" };
-        let (low, high) = (find.low_text(), find.text(find.high.value));
+        let (low, high) = (find.low_text(), find.high_text());
         let scanned = if find.scans() { ", and at all values scanned between them" } else { "" };
         let words = find.until.words();
         self.limit.is_none().then(|| format!("no limit: `{words}` is {state} at {low} and at {high}{scanned}"))

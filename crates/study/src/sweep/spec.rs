@@ -68,6 +68,21 @@ pub(crate) fn entries<'a, 't>(table: &'a DeTable<'t>) -> Vec<(&'a str, Node<'a, 
     all.into_iter().map(|(_, key, node)| (key, node)).collect()
 }
 
+/// The entry that a path names: one of the file, such as `fragility.intensity`, or the last that varies or searches this key of the scene.
+fn named<'a, 't>(root: &'a DeTable<'t>, path: &str) -> Option<Node<'a, 't>> {
+    let varied = ["grid", "zip", "random"].map(|table| at(root, table).and_then(|node| at(node.table()?, path)));
+    let searched = at(root, "find.key").filter(|node| node.text().is_some_and(|key| key.trim() == path));
+    varied.into_iter().chain([at(root, path), searched]).flatten().max_by_key(|node| node.start)
+}
+
+/// The entry of a table at a path, whose parts may be keys of their own or stand in one quoted key.
+fn at<'a, 't>(table: &'a DeTable<'t>, path: &str) -> Option<Node<'a, 't>> {
+    entries(table).into_iter().find_map(|(name, node)| match path.strip_prefix(name)? {
+        "" => Some(node),
+        rest => at(node.table()?, rest.strip_prefix('.')?),
+    })
+}
+
 impl<'a> Reader<'a> {
     pub(crate) fn new(file: &'a str, text: &'a str) -> Self {
         Self { file, text, found: Diagnostics::default() }
@@ -102,12 +117,17 @@ impl<'a> Reader<'a> {
         let mut finding = Diagnostic::error(self.file, rule).with_remedy(remedy);
         finding.path = path.to_owned();
         if let Some(node) = node {
-            let written = self.written(node);
-            let short = written.len() <= 60 && !written.contains('\n');
-            finding.written = (short && node.table().is_none()).then(|| written.to_owned());
-            self.place(&mut finding, node.span());
+            self.point(&mut finding, node);
         }
         self.found.0.push(finding);
+    }
+
+    /// Gives a finding the place and the text of a value.
+    fn point(&self, finding: &mut Diagnostic, node: &Node<'_, '_>) {
+        let written = self.written(node);
+        let short = written.len() <= 60 && !written.contains('\n');
+        finding.written = (short && node.table().is_none()).then(|| written.to_owned());
+        self.place(finding, node.span());
     }
 
     /// Adds a finding about a key that isn't known.
@@ -125,6 +145,18 @@ impl<'a> Reader<'a> {
         let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
         finding.position = Some((line, column));
         finding.span = Some(span);
+    }
+
+    /// The findings, in the order of the file; those without a place get that of the entry of `root` that their path names.
+    pub(crate) fn placed_in(mut self, root: &DeTable<'_>) -> Diagnostics {
+        let mut found = std::mem::take(&mut self.found);
+        for finding in found.0.iter_mut().filter(|finding| finding.position.is_none()) {
+            if let Some(node) = named(root, &finding.path) {
+                self.point(finding, &node);
+            }
+        }
+        found.sort();
+        found
     }
 
     /// The findings, in the order of the file.
