@@ -583,7 +583,7 @@ fn of_beams_alone_the_deflections_are_their_own() {
             "[beam.{name}]\nsection = 'direct'\nbending_stiffness = '40 N m^2'\nmass_per_length = '0.4 kg/m'\nspan = '1 m'\nelements = 8\n{more}"
         )
     };
-    let load = "[load.step]\nbeam = 'loaded'\nat = '50 cm'\nforce = '-8 N'\n";
+    let load = "[load.step]\non = 'loaded'\nat = '50 cm'\nforce = '-8 N'\n";
     for model in ["", "model = 'modes'\nmodes = { count = 4 }\n"] {
         let text =
             format!("[time]\nend = '0.2 s'\nstep = '100 us'\n{}{}{load}", beam("idle", model), beam("loaded", model));
