@@ -323,7 +323,11 @@ impl Summary {
             |of: fn(&BodyVerdict) -> Option<f64>, pick: fn(f64, f64) -> f64| verdict.iter().filter_map(of).reduce(pick);
         Self {
             headline: match wanted("headline") {
-                true => headline(scene, state, &as_told(scene, &verdict, record), (&beams, &deflections)),
+                true => {
+                    let moved = |number| record.fates.moved(number, layout, state);
+                    let told = as_told(scene, &verdict, record);
+                    headline(scene, state, &told, (&beams, &deflections), moved)
+                }
                 false => String::new(),
             },
             max_phi_over_alpha: first(|of| of.max_phi_over_alpha, f64::max),

@@ -102,8 +102,8 @@ struct Seen {
     began: Option<f64>,
     /// Of such a block, while nothing but a push could turn it over.
     settling: Option<Settling>,
-    /// Its angle at the start of the run, from which its turns count, rad.
-    from: f64,
+    /// Where it was at the start of the run, m, m, and its angle, from which its turns count, rad.
+    start: [f64; 3],
     /// Its angle at the end of the last step, rad.
     angle: f64,
     /// The same against what carries it.
@@ -228,7 +228,8 @@ impl Fates {
         let AtStart { standing, touching, past_edge } = standing::at_start(&watch.blocks, layout, model, state)?;
         self.joints = Joints::new(&touching, &watch.blocks, layout, state);
         for (number, ((watched, stands), past_edge)) in watch.blocks.iter().zip(standing).zip(past_edge).enumerate() {
-            let angle = state.q[layout.blocks[number].range.start + 2];
+            let q = &state.q[layout.blocks[number].range.clone()];
+            let (start, angle) = ([q[0], q[1], q[2]], q[2]);
             // What was placed on something stands there on its base, however far that slopes or it is tilted: on a slope beyond α it is past the
             // point of no return from the start. Its base is the side below where it is level for gravity, which may lean.
             let level = watched.outline.as_ref().map_or(0.0, Outline::level);
@@ -239,7 +240,7 @@ impl Fates {
             self.blocks.push(Seen {
                 began,
                 released: watched.centre(layout, number, state),
-                from: angle,
+                start,
                 angle,
                 stands_from,
                 stood,
@@ -292,12 +293,14 @@ impl Fates {
         let floor = watch.floor.depth(layout, &state.q);
         for (number, (seen, watched)) in self.blocks.iter_mut().zip(&watch.blocks).enumerate() {
             seen.tilt = watched.tilt(layout, number, state);
-            if watched.driven {
-                continue;
-            }
             let place = &layout.blocks[number];
             let q = &state.q[place.range.clone()];
             let t = state.t;
+            if watched.driven {
+                let is_still = watched.speed_over_base(layout, number, state) <= watched.still_speed;
+                seen.still = if is_still { seen.still.or(Some(t)) } else { None };
+                continue;
+            }
             if seen.began.is_none() {
                 seen.settle(watched, watch.slope(number, layout, state), layout, number, state);
             }
@@ -394,13 +397,21 @@ impl Fates {
         if watch.stop.sunk && free().any(|(seen, _)| seen.sunk.is_some()) {
             return Some(StopReason::Sunk);
         }
-        (watch.stop.rest && t > watch.settles_at && free().all(rests)).then_some(StopReason::Rest)
+        // What is free in part has no verdict, but may still move the others.
+        let mut movable = self.blocks.iter().zip(&watch.blocks).filter(|(_, watched)| !watched.held);
+        (watch.stop.rest && t > watch.settles_at && movable.all(rests)).then_some(StopReason::Rest)
     }
 
     /// What ended the run before its end, and when, s.
     #[must_use]
     pub fn stopped(&self) -> Option<(f64, StopReason)> {
         self.stopped
+    }
+
+    /// How far a block is from where it was at the start of the run, m, m, and by how much it has turned since, rad.
+    pub(crate) fn moved(&self, number: usize, layout: &Layout, state: &State) -> [f64; 3] {
+        let (q, seen) = (&state.q[layout.blocks[number].range.clone()], &self.blocks[number]);
+        [0, 1, 2].map(|k| q[k] - seen.start[k])
     }
 
     /// What became of each block whose motion isn't prescribed.

@@ -86,7 +86,7 @@ pub struct Time {
 pub struct StopScene {
     /// A block has overturned.
     pub overturned: bool,
-    /// All blocks rest, and nothing is prescribed to change any more.
+    /// All blocks rest, all prescribed motion is over, and no force or load changes any more.
     pub rest: bool,
     /// A block is below everything that could hold it.
     pub sunk: bool,
@@ -118,11 +118,14 @@ impl Scene {
         })
     }
 
-    /// From which time on nothing prescribed changes any more, s: motions, forces and loads. Infinite
-    /// if something never stops, such as a harmonic.
+    /// From which time on nothing prescribed moves, and no force or load changes, s. Infinite if
+    /// something goes on for ever, such as a harmonic, or a velocity without a signal.
     #[must_use]
     pub fn settles_at(&self) -> f64 {
-        let motions: Vec<f64> = self.motions().map(|(_, motion)| motion.settles_at()).collect();
+        // To what has nothing but the ground to meet, a constant velocity of that is none, such as the
+        // one with which a record ends.
+        let alone = self.beams.is_empty() && self.blocks.iter().all(|block| !block.motion.is_given());
+        let motions: Vec<f64> = self.motions().map(|(_, motion)| motion.ends_at(alone)).collect();
         let forces = self.forces.iter().map(|force| force.history.settles_at());
         let loads = self.loads.iter().map(|load| match load.kind {
             LoadKind::Moving { at, speed, .. } if speed != 0.0 => {

@@ -31,10 +31,11 @@ pub(crate) fn of(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
         let rule = format!("no effect: with theta = {} every step is stable", time.theta);
         idle("time.allow_conditional_stability", rule, "leave it out; it goes with theta below 0.5");
     }
-    if time.stop.is_given() && scene.blocks.is_empty() {
-        idle("time.stop", "no effect: there are no blocks".to_owned(), "leave it out");
+    if time.stop.is_given() && scene.blocks.iter().all(|block| block.motion.is_given()) {
+        idle("time.stop", "no effect: there are no free blocks".to_owned(), "leave it out");
     } else if time.stop.rest && scene.settles_at() >= end {
-        let rule = "`rest` has no effect: a motion, force or load changes up to the end of the run".to_owned();
+        let rule =
+            "`rest` has no effect: a motion goes on, or a force or load changes, up to the end of the run".to_owned();
         idle("time.stop", rule, "leave `rest` out, or let the run go on past the end of what drives it");
     }
     if let Some(every) = scene.every {

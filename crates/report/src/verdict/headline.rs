@@ -12,15 +12,16 @@ use teeter_scenario::scene::{BlockScene, Scene};
 /// Blocks up to this many are told one by one.
 const FEW: usize = 2;
 
-/// What became of the scene.
+/// What became of the scene; `moved` says how far a block is from its start.
 pub(crate) fn headline(
     scene: &Scene,
     state: &State,
     verdict: &[BodyVerdict],
     (beams, deflections): (&[BorneSummary], &[LargestDeflection]),
+    moved: impl Fn(usize) -> [f64; 3],
 ) -> String {
     let mut text = match verdict {
-        [] => deflected(state, deflections),
+        [] => without_free_blocks(scene, state, deflections, moved),
         few if few.len() <= FEW => {
             few.iter().map(|of| format!("`{}` {}", of.body, one(scene, of, state.t))).collect::<Vec<_>>().join("; ")
         }
@@ -60,23 +61,62 @@ pub(crate) fn percent(part: f64, with_blocks: bool) -> String {
     }
 }
 
-/// What became of beams without blocks: how far they deflected, in the order given.
-fn deflected(state: &State, deflections: &[LargestDeflection]) -> String {
-    let moved: Vec<_> = deflections.iter().filter(|of| of.w != 0.0).collect();
-    if moved.is_empty() {
-        let what = if deflections.is_empty() { "nothing moves" } else { "nothing deflects" };
-        return format!("{what} up to {}", time(state.t));
+/// What became of a scene without free blocks: where blocks that are free in part ended, and how far beams deflected, in the order given.
+fn without_free_blocks(
+    scene: &Scene,
+    state: &State,
+    deflections: &[LargestDeflection],
+    moved: impl Fn(usize) -> [f64; 3],
+) -> String {
+    let in_part = |(_, block): &(usize, &BlockScene)| block.motion.is_given() && !block.motion.is_whole();
+    let ends = |(number, block)| ended(block, moved(number));
+    let mut told: Vec<String> = scene.blocks.iter().enumerate().filter(in_part).map(ends).collect();
+    let of_blocks = told.len();
+    if of_blocks > FEW {
+        told.splice(FEW.., [format!("{} more blocks are free in part", of_blocks - FEW)]);
     }
-    let told = |of: &&LargestDeflection| {
+    let bent: Vec<_> = deflections.iter().filter(|of| of.w != 0.0).collect();
+    told.extend(bent.iter().take(FEW).map(|of| {
         let way = if of.w < 0.0 { "down" } else { "up" };
         let (w, x) = (with_unit(of.w.abs(), "m"), with_unit(of.x, "m"));
         format!("`{}` deflected by up to {w} {way} at x = {x}, {}", of.beam, time(of.t))
-    };
-    let mut text = moved.iter().take(FEW).map(told).collect::<Vec<_>>().join("; ");
-    if moved.len() > FEW {
-        text.push_str(&format!("; the other {} beams by less of their spans", moved.len() - FEW));
+    }));
+    if bent.len() > FEW {
+        told.push(format!("the other {} beams by less of their spans", bent.len() - FEW));
     }
-    text
+    if told.is_empty() {
+        let is_driven = scene.motions().any(|(_, motion)| motion.0.iter().flatten().any(|axis| axis.amplitude != 0.0));
+        let what = match (deflections.is_empty(), is_driven) {
+            (false, _) => "nothing deflects",
+            // Beside blocks the deflections of beams aren't known.
+            _ if !scene.beams.is_empty() => return "no block is free".to_owned(),
+            (true, true) => "nothing moves but as prescribed",
+            (true, false) => "nothing moves",
+        };
+        return format!("{what} up to {}", time(state.t));
+    }
+    let none = if of_blocks > 0 { "no block is free; " } else { "" };
+    format!("{none}{}", told.join("; "))
+}
+
+/// Where a block of which a part of the motion is prescribed ended by the rest of it, from its start (m, m, rad).
+fn ended(block: &BlockScene, moved: [f64; 3]) -> String {
+    let (least, axes) = (super::STILL * block.radius(), &block.motion.0);
+    let far = |k: usize| (axes[k].is_none() && moved[k].abs() >= least).then(|| with_unit(moved[k].abs(), "m"));
+    let across = far(0).map(|x| format!("{x} {} its start", if moved[0] < 0.0 { "left of" } else { "right of" }));
+    let up = far(1).map(|y| format!("{y} {}", if moved[1] < 0.0 { "lower" } else { "higher" }));
+    let turned = (axes[2].is_none() && moved[2].abs() >= super::STILL).then(|| {
+        format!(
+            "turned by {} {}",
+            turns(moved[2].abs()),
+            if moved[2] < 0.0 { "clockwise" } else { "counter-clockwise" }
+        )
+    });
+    let told: Vec<String> = [across, up, turned].into_iter().flatten().collect();
+    let given: Vec<&str> =
+        ["x", "y", "φ"].into_iter().zip(axes).filter_map(|(of, axis)| axis.as_ref().map(|_| of)).collect();
+    let at = if told.is_empty() { "where it started".to_owned() } else { told.join(", ") };
+    format!("`{}`, its {} prescribed, ended {at}", block.name, given.join(" and "))
 }
 
 /// A part of a limit: what stays below it isn't rounded up to it.

@@ -94,7 +94,7 @@ impl Seen {
         let lies_on = rests
             .and_then(|_| side_on(watched.slope(&state.q)).or_else(|| side_on(watched.turn(layout, number, state))));
         let leans = rests.is_some() && lies_on.is_none() && watched.outline.is_some();
-        let turned = self.angle - self.from;
+        let turned = self.angle - self.start[2];
         // Where pieces of a profile meet, a base goes a little less far than its feet. What comes down turns over as it does.
         let apart = if watched.carrier.is_terrain() || began_in_flight { watched.base() } else { least };
         let is_free = matches!(block.placement, Placement::Free { .. });

@@ -17,7 +17,7 @@ pub(crate) struct Watch {
     pub(super) above: Vec<Option<usize>>,
     pub(super) floor: Floor,
     pub(super) stop: StopScene,
-    /// Before it nothing ends the run by rest, s.
+    /// Before it nothing ends the run by rest, s: prescribed motion goes on, or forces or loads change.
     pub(super) settles_at: f64,
 }
 
@@ -45,8 +45,10 @@ pub(super) struct Watched {
     pub(super) up: [f64; 2],
     /// What it was placed on.
     pub(super) on: Option<SupportingBody>,
-    /// Whether its motion is prescribed: nothing becomes of it.
+    /// Whether its motion is prescribed, in part at least: nothing becomes of it.
     pub(super) driven: bool,
+    /// Whether all of its motion is.
+    pub(super) held: bool,
     /// Whether a hump of a beam can touch it between its feet.
     pub(super) has_face: bool,
     /// The block at the foot of the stack that it is in.
@@ -102,6 +104,7 @@ impl Watch {
                     Placement::Free { .. } => None,
                 },
                 driven: block.motion.is_given(),
+                held: block.motion.is_whole(),
                 lowest: carrier::lowest_below(scene, number),
                 has_face: scene.contacts.iter().any(|contact| contact.block == number && contact.sides),
                 driven_until: carrier::driven_below(scene, number).map_or(0.0, |(_, motion)| motion.settles_at()),

@@ -237,10 +237,19 @@ impl MotionScene {
         self.0.iter().all(Option::is_some)
     }
 
-    /// From which time on it no longer changes, s; infinite if it never stops.
+    /// From which time on its signals no longer change, s; infinite if one never stops. The motion
+    /// itself may go on: see [`Self::ends_at`].
     #[must_use]
     pub fn settles_at(&self) -> f64 {
         self.0.iter().flatten().map(|axis| axis.history.settles_at()).fold(0.0, f64::max)
+    }
+
+    /// From which time on nothing of it moves any more, s, or, where it may `drift`, moves by more
+    /// than a constant velocity of x and y; infinite if it goes on for ever.
+    #[must_use]
+    pub fn ends_at(&self, drift: bool) -> f64 {
+        let axes = self.0.iter().enumerate();
+        axes.filter_map(|(k, axis)| Some(axis.as_ref()?.ends_at(drift && k < 2))).fold(0.0, f64::max)
     }
 
     /// The motions of x, y and rotation; those not prescribed are zero.
@@ -250,7 +259,28 @@ impl MotionScene {
     }
 }
 
+/// A velocity below this part of what the amplitude gives until the signal ends is the rounding of
+/// its integral.
+const ROUNDING: f64 = 1e-9;
+
 impl AxisScene {
+    /// From which time on it stands still, s, or, where it may `drift`, isn't accelerated.
+    fn ends_at(&self, drift: bool) -> f64 {
+        let settled = self.history.settles_at().max(0.0);
+        if self.amplitude == 0.0 {
+            return 0.0;
+        }
+        if self.given == Given::Displacement || settled.is_infinite() {
+            return settled;
+        }
+        // From here on the velocity is constant or, by an acceleration, a straight line.
+        let motion = self.motion();
+        let [first, second] = [1.0, 2.0].map(|later| motion.velocity(settled + later));
+        let is_zero = |v: f64| v.abs() <= ROUNDING * self.amplitude.abs() * (settled + 2.0);
+        let is_over = is_zero(second - first) && (drift || is_zero(first));
+        if is_over { settled } else { f64::INFINITY }
+    }
+
     /// The motion for the integrator.
     #[must_use]
     pub fn motion(&self) -> Motion {
