@@ -367,7 +367,7 @@ fn what_is_wrong_in_a_sweep_file_is_told_with_its_place_and_a_remedy() {
         (
             "no-unit",
             "scene = \"rocking.toml\"\n[grid]\ncontact.feet.friction = [0.3]\nblock.rocker.tilt = [1, 2]\n",
-            &["block.rocker.tilt = [1, 2]", "sweep.toml:4", "an angle needs a unit"],
+            &["block.rocker.tilt = [1, 2]", "sweep.toml:4", "an angle needs its unit"],
         ),
         (
             "no-number",

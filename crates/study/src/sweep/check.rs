@@ -65,7 +65,10 @@ impl Sweep {
             let refused = |value: String| {
                 let setting = Setting::none().set(key.to_owned(), value);
                 let found = if is_known { source.errors_of_text(&setting) } else { source.load(&setting).err()? };
-                found.0.into_iter().find(|finding| finding.set.as_ref().is_some_and(|set| set.starts_with(key)))
+                // Of a key that there is, only what is wrong with the key itself: the table may lack others, which isn't its fault.
+                let is_own = |finding: &Diagnostic| !is_known || finding.path.starts_with(key);
+                let is_of_value = |finding: &Diagnostic| finding.set.as_ref().is_some_and(|set| set.starts_with(key));
+                found.0.into_iter().find(|finding| is_of_value(finding) && is_own(finding))
             };
             let tried = if is_known { VALUES_TRIED } else { 1 };
             // As soon as one value isn't refused, there is nothing to tell.
