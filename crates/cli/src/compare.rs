@@ -164,9 +164,7 @@ fn write_all(
     for found in comparison.channels.iter().filter(|found| found.differences.rows > 0) {
         let ((_, factor), unit) = (found.channel.shown(), found.channel.shown_after(" "));
         let d = found.differences;
-        // What was measured may not move at all.
-        let share =
-            if d.scale > 0.0 { format!(" ({:.1} % of the largest)", 100.0 * d.rms / d.scale) } else { String::new() };
+        let share = d.share(d.rms).map(|share| format!(" ({:.1} % of the largest)", 100.0 * share)).unwrap_or_default();
         text += &format!(
             "{}: root mean square difference {}{unit}{share}, at most {}{unit} at t = {:.4} s\n",
             found.channel.title(),

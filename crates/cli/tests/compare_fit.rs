@@ -479,6 +479,8 @@ fn bad_measured_tables_are_refused_with_their_line() {
     refused(&["compare", "missing", "good.csv"], "there is no such folder");
     refused(&["compare", "run", "good.csv", "--columns", "layout.toml"], "did you mean `separator`?");
     refused(&["compare", "run", "good.csv", "--column", "fi=phi"], "there is no quantity `fi`");
+    std::fs::write(folder.join("camera.csv"), "Frame time (s),phi\n0,0.1\n0.1,0.2\n").unwrap();
+    refused(&["compare", "run", "camera.csv"], "if `Frame time` has them, --column t=\"Frame time\"");
     refused(&["compare", "run", "good.csv", "--block", "b"], "no block `b`; the run has `rocker`");
     refused(&["compare", "run", "good.csv", "--window", "4"], "an odd number of rows");
     refused(
@@ -535,7 +537,11 @@ fn what_a_table_shows_beside_the_motion_is_told() {
     let (text, _) = compare(&["alone.csv", "--rate", "165 Hz"]);
     assert!(text.contains("(found)") && !text.contains("hardly match"), "{text}");
     table("still.csv", "t,phi", &|row| format!("{},0.01\n", row[0]));
-    assert!(compare(&["still.csv"]).0.contains("the measured phi is the same in all rows"));
+    let (text, _) = compare(&["still.csv"]);
+    assert!(text.contains("the measured phi is the same in all rows") && !text.contains("outlier"), "{text}");
+    table("drifting.csv", "t,phi", &|row| format!("{},{}\n", row[0], 1e-9 * row[0]));
+    let (text, _) = compare(&["drifting.csv"]);
+    assert!(text.contains("Angle φ: root mean square difference") && !text.contains("% of the largest"), "{text}");
     let noise = std::cell::RefCell::new(Noise(3));
     table("noise.csv", "t,phi", &|row| format!("{},{}\n", row[0], 1e-3 * noise.borrow_mut().next()));
     let (text, _) = compare(&["noise.csv"]);

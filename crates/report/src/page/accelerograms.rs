@@ -221,7 +221,7 @@ const VELOCITY: &str = "/s";
 const IN_RUN: &str = "PGA of the part that was run";
 
 /// What the table says of a record.
-const MEASURES: [Measure; 12] = [
+const MEASURES: [Measure; 13] = [
     Measure::of("Duration", "s", |of, _| of.duration),
     Measure::of("Peak acceleration (PGA)", "m/s²", |of, _| of.peak_acceleration),
     Measure::of(IN_RUN, "m/s²", |of, _| of.peak_acceleration_in_run.unwrap_or(of.peak_acceleration)),
@@ -231,6 +231,7 @@ const MEASURES: [Measure; 12] = [
     Measure::of("Peak displacement (PGD)", "m", |of, _| of.peak_displacement),
     Measure::alone("Time of the peak displacement", "s", |_, record| record.displacement_peak().time),
     Measure::of("Arias intensity", ARIAS, |of, _| of.arias_intensity),
+    Measure::alone("Arias intensity by the plain sum over the values", ARIAS, |_, record| record.arias_sum()),
     Measure::of("Significant duration, 5–95 %", "s", |of, _| of.significant_duration),
     Measure::alone("Velocity at the end", VELOCITY, |_, record| record.at_the_end()[0]),
     Measure::alone("Displacement at the end", "m", |_, record| record.at_the_end()[1]),

@@ -14,7 +14,7 @@ use teeter_scenario::simulation::Simulation;
 const G: f64 = 9.81;
 
 /// A timber plank and blocks; `more` has the rest of the plank's keys, blocks and contacts.
-fn scene(end: &str, more: &str) -> String {
+pub(super) fn scene(end: &str, more: &str) -> String {
     format!(
         "[time]\nend = '{end}'\nstep = '100 us'\nscheme = 'moreau-jean-closed'\n[ground]\n\
          [material.timber]\ndensity = '500 kg/m^3'\nyoungs_modulus = '11 GPa'\n\
@@ -83,7 +83,7 @@ pub(super) fn forces(simulation: &mut Simulation) -> Forces {
 }
 
 /// A plank over three supports, which sags between them, and a block over the one in the middle.
-const OVER_A_SUPPORT: &str = "span = '1.2 m'\nwidth = '10 cm'\nthickness = '5 mm'\nelements = 24\n\
+pub(super) const OVER_A_SUPPORT: &str = "span = '1.2 m'\nwidth = '10 cm'\nthickness = '5 mm'\nelements = 24\n\
      [beam.plank.support.middle]\nat = '60 cm'\nkind = 'pinned'\n\
      [block.base]\nmaterial = 'stone'\nwidth = '20 cm'\nheight = '5 cm'\ndepth = '3 cm'\nposition = ['61 cm', '2.6 cm']\n\
      [contact.c]\nbetween = ['base', 'plank']\nfriction = 0.6\n";

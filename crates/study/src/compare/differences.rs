@@ -23,6 +23,17 @@ pub struct Differences {
     pub rows: usize,
 }
 
+/// Larger shares of the largest measured value than this say only that it hardly moves.
+pub(super) const MOST_SHARE: f64 = 100.0;
+
+impl Differences {
+    /// A difference as a share of the largest measured magnitude; `None` where what was measured hardly moves beside it.
+    #[must_use]
+    pub fn share(&self, difference: f64) -> Option<f64> {
+        (difference < MOST_SHARE * self.scale).then(|| difference / self.scale)
+    }
+}
+
 /// A quantity, measured and simulated, both sampled and smoothed in the same way.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelComparison {

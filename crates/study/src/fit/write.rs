@@ -197,6 +197,8 @@ impl Shown {
         let error = match *error {
             error if !error.is_finite() => "–".to_owned(),
             error if error > width => "more than the range".to_owned(),
+            // As where other values fit as well: the neighbourhood of one says nothing of what is known.
+            error if number(error).parse() == Ok(0.0) => "–".to_owned(),
             error => format!("{}{unit}", number(error)),
         };
         let interval = match range {
@@ -471,7 +473,16 @@ pub fn figures(fit: &Fit, width: f64) -> Result<Vec<(String, String)>, AxisError
 
 #[cfg(test)]
 mod tests {
-    use super::is_hardly_worse;
+    use super::{Shown, is_hardly_worse};
+
+    #[test]
+    fn a_standard_error_that_the_interval_dwarfs_is_no_zero() {
+        let cells = |error: f64| {
+            Shown { value: 0.658, error, interval: (0.0, 0.8), unit: String::new() }.cells(Some((0.0, 0.8)))
+        };
+        assert_eq!(cells(0.0011), ["0.66", "–", "all of the range, 0 to 0.8"]);
+        assert_eq!(cells(0.02)[1], "0.02");
+    }
 
     #[test]
     fn a_minimum_that_noise_cannot_account_for_is_clearly_worse() {

@@ -199,6 +199,14 @@ impl<'a> Columns<'a> {
         MeasuredError::Columns(format!("no column `{}` for {what}: {there}{near}", printable(name)))
     }
 
+    /// A hint at the first column whose heading speaks of time.
+    fn named_time(&self) -> String {
+        let is_time =
+            |name: &&str| name.to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| word == "time");
+        let name = self.names.iter().map(|(name, _)| name.as_str()).find(is_time);
+        name.map(|name| format!("; if `{0}` has them, --column t=\"{0}\"", printable(name))).unwrap_or_default()
+    }
+
     /// Refuses to take rows as equally spaced where a column counts frames and skips some.
     fn refuse_lost_frames(&self) -> Result<(), MeasuredError> {
         let counts = |name: &str| {
@@ -263,8 +271,9 @@ impl<'a> Columns<'a> {
                         self.count()
                     )),
                     false => MeasuredError::Columns(format!(
-                        "{}; for rows at a constant rate, give --rate \"165 Hz\"",
-                        self.missing("t", "times")
+                        "{}{}; for rows at a constant rate, give --rate \"165 Hz\"",
+                        self.missing("t", "times"),
+                        self.named_time()
                     )),
                 });
             }

@@ -51,7 +51,10 @@ pub enum SweepIdentityError {
     /// The sweep file is another one.
     #[error("the sweep file has changed since")]
     Sweep,
-    /// The scene, or a file that it reads, has changed.
+    /// The scene has changed, and no file that it reads.
+    #[error("the scene file has changed since")]
+    Scene,
+    /// The scene, or a file that it reads, has changed: an older version didn't write which.
     #[error("the scene, or a file that it reads, has changed since")]
     Inputs,
     /// Files that the scene reads have changed, or the files that a pattern matches: which.
@@ -207,6 +210,7 @@ impl SweepIdentity {
         Err(match self.changed(then) {
             Some(files) => SweepIdentityError::Files(files),
             None if then.cases != self.cases => SweepIdentityError::Matches { then: then.cases, now: self.cases },
+            None if then.files == self.files => SweepIdentityError::Scene,
             None => SweepIdentityError::Inputs,
         })
     }
@@ -267,7 +271,9 @@ mod tests {
         let own = of("scene = \"a\"\n", b"[time]", "1/2");
         assert_eq!(SweepIdentity::from_json(&own.to_json()), Ok(own.clone()));
         assert_eq!(own.admit(&of("scene = \"b\"\n", b"[time]", "1/2")), Err(SweepIdentityError::Sweep));
-        assert_eq!(own.admit(&of("scene = \"a\"\n", b"[tim]", "1/2")), Err(SweepIdentityError::Inputs));
+        assert_eq!(own.admit(&of("scene = \"a\"\n", b"[tim]", "1/2")), Err(SweepIdentityError::Scene));
+        let read = own.clone().reading([("a.AT2", b"1".as_slice())]);
+        assert_eq!(read.admit(&of("scene = \"a\"\n", b"[tim]", "1/2")), Err(SweepIdentityError::Inputs));
         let other = of("scene = \"a\"\n", b"[time]", "2/2");
         assert_eq!(own.admit(&other).unwrap_err().to_string(), "it holds shard 2/2, not 1/2");
         assert_eq!(own.admit_study(&other), Ok(()));

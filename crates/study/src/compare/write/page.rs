@@ -1,6 +1,7 @@
 //! `compare.html`: a self-contained page in the style of a run's report.
 
 use super::{motion_figures, sentences_of};
+use crate::compare::differences::MOST_SHARE;
 use crate::compare::{ChannelComparison, Comparison, ImpactPair};
 use crate::measured::Channel;
 use crate::write::{html_list, html_table, percent, power, short};
@@ -22,9 +23,6 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     let text = if text.parse() == Ok(0.0) { text.trim_start_matches('-') } else { &text };
     text.replace('-', "\u{2212}")
 }
-
-/// A share of this size or more is one of rounding: what it is compared with doesn't move.
-const MOST_SHARE: f64 = 100.0;
 
 fn optional(value: Option<f64>, show: impl Fn(f64) -> String) -> String {
     value.filter(|value| value.is_finite()).map_or("–".to_owned(), show)
@@ -51,7 +49,7 @@ fn quantity_row(found: &ChannelComparison) -> Vec<String> {
         return cells;
     }
     let value = |x: f64| format!("{}{unit}", power(factor * x).replace('-', "\u{2212}"));
-    let share = |x: f64| if x < MOST_SHARE * d.scale { percent(x / d.scale) } else { "–".to_owned() };
+    let share = |x: f64| d.share(x).map_or("–".to_owned(), percent);
     vec![
         found.channel.title().to_owned(),
         value(d.rms),
@@ -104,11 +102,7 @@ fn headline(comparison: &Comparison) -> String {
     };
     let d = found.differences;
     let ((_, factor), unit) = (found.channel.shown(), found.channel.shown_after("\u{a0}"));
-    let share = if d.rms < MOST_SHARE * d.scale {
-        format!(", {} of the largest", percent(d.rms / d.scale))
-    } else {
-        String::new()
-    };
+    let share = d.share(d.rms).map(|share| format!(", {} of the largest", percent(share))).unwrap_or_default();
     let last = comparison.measured.t.get(comparison.rows.end.saturating_sub(1)).copied().unwrap_or(0.0);
     let mut text = format!(
         "{}: root mean square difference {}{unit}{share}, up to t = {}\u{a0}s",

@@ -73,6 +73,9 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
             alignment.by.word()
         ));
     }
+    // Where a wrong column was read, all that follows is about nothing.
+    let of_table = comparison.channels.iter().filter(|found| found.is_measured);
+    texts.extend(of_table.filter_map(|found| without_motion(measured, found)));
     texts.extend(other_alignments(comparison));
     texts.extend(outliers(comparison));
     texts.extend(coarse_run(comparison));
@@ -144,18 +147,11 @@ pub fn sentences_of(comparison: &Comparison) -> Vec<String> {
     let mismatch = mismatch(comparison);
     if mismatch > UNLIKE {
         texts.push(format!(
-            "the motions hardly match: their mean square difference is {} of what unrelated motions have{}",
+            "warning: the motions hardly match: their mean square difference is {} of what unrelated motions have{}",
             percent(mismatch),
             perhaps_degrees(comparison)
         ));
     }
-    texts.extend(
-        comparison
-            .channels
-            .iter()
-            .filter(|found| found.is_measured)
-            .filter_map(|found| without_motion(measured, found)),
-    );
     texts.extend(constant(comparison));
     texts
 }
@@ -255,13 +251,13 @@ fn without_motion(motion: &MeasuredMotion, found: &ChannelComparison) -> Option<
     let spread = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n).sqrt();
     let word = found.channel.word();
     if rows.iter().all(|value| *value == rows[0]) {
-        return Some(format!("the measured {word} is the same in all rows: is it the right column?"));
+        return Some(format!("warning: the measured {word} is the same in all rows: is it the right column?"));
     }
     // Smoothing leaves less than the noise of the rows.
     let ((_, factor), unit) = (found.channel.shown(), found.channel.shown_after(" "));
     (spread <= found.measured.noise).then(|| {
         format!(
-            "the measured {word} doesn’t rise above its noise, whose standard deviation is {}{unit}: is it the right column?",
+            "warning: the measured {word} doesn’t rise above its noise, whose standard deviation is {}{unit}: is it the right column?",
             power(factor * found.measured.noise)
         )
     })
