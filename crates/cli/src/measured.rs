@@ -59,11 +59,11 @@ pub(crate) struct MeasuredOptions {
 struct Lines(Vec<RangeInclusive<usize>>);
 
 fn column(text: &str) -> Result<(String, String), String> {
-    crate::key_value(text).map_err(|_| "write NAME=COLUMN, such as phi=\"Angle\" or phi=2".to_owned())
+    crate::arguments::key_value(text).map_err(|_| "write NAME=COLUMN, such as phi=\"Angle\" or phi=2".to_owned())
 }
 
 fn unit(text: &str) -> Result<(String, String), String> {
-    crate::key_value(text).map_err(|_| "write NAME=UNIT, such as phi=deg".to_owned())
+    crate::arguments::key_value(text).map_err(|_| "write NAME=UNIT, such as phi=deg".to_owned())
 }
 
 fn skip(text: &str) -> Result<usize, String> {

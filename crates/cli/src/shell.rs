@@ -11,7 +11,7 @@ use std::path::Path;
 /// Prints the completions of a shell.
 pub(crate) fn completions(shell: Shell) -> Exit {
     let mut script = Vec::new();
-    clap_complete::generate(shell, &mut crate::Arguments::command(), "teeter", &mut script);
+    clap_complete::generate(shell, &mut crate::arguments::Arguments::command(), "teeter", &mut script);
     print_all(&String::from_utf8_lossy(&script))
 }
 
@@ -32,7 +32,7 @@ pub(crate) fn man(folder: &Path) -> Exit {
 
 fn write_pages(folder: &Path) -> io::Result<usize> {
     std::fs::create_dir_all(folder)?;
-    let program = crate::Arguments::command();
+    let program = crate::arguments::Arguments::command();
     let mut pages = vec![("teeter".to_owned(), program.clone())];
     for command in program.get_subcommands().filter(|command| !command.is_hide_set()) {
         let name = format!("teeter-{}", command.get_name());

@@ -27,7 +27,8 @@ mod tension;
 
 pub use scheme::{Made, SchemeFailure, SchemeProperty, check_scheme};
 
-use crate::subsystem::{Span, dot};
+use crate::compliance::Span;
+use crate::subsystem::dot;
 use crate::{Compliance, Coupling, PartRows, Rows, Subsystem, Traits, Vector, Weights};
 use teeter_contact::Block;
 use teeter_detect::{Frame, Kinematics, plane_frame};

@@ -1,7 +1,7 @@
 //! W of every subsystem, for as many combinations of weights as a scheme has use for.
 
 use crate::blend::{Blends, Term, is_blend};
-use crate::subsystem::respond_by_solving;
+use crate::compliance::respond_by_solving;
 use crate::theta_step::weights;
 use crate::{Compliance, Coupling, FactorError, Model, Part, PartRows, Propagator, Vector, Weights};
 

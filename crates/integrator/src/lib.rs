@@ -65,6 +65,7 @@ mod blend;
 mod clock;
 mod closed_step;
 mod closings;
+mod compliance;
 #[cfg(feature = "conformance")]
 pub mod conformance;
 mod contact;
@@ -123,6 +124,7 @@ pub use adapters::ground::Ground;
 #[cfg(feature = "beam")]
 pub use adapters::modal_beam::ModalBeam;
 pub use closings::{Closing, ClosingMonitor, Opening, Openings};
+pub use compliance::{Compliance, Coupling, FactorError, PartRows};
 pub use contact::{Contact, ContactState, tangential};
 pub use coupled_modes::{CoupledModes, CoupledModesError, MOST_VELOCITIES, coupled_modes};
 pub use equilibrium::{Equilibrium, EquilibriumError, SettlingLimits, settle};
@@ -151,10 +153,7 @@ pub use spring::SpringStep;
 pub use stage::{ContactError, ContactStage, Look, Over, Rule};
 pub use state::{STEP_ROUNDING, State, StateError, StepSpan, Tally, WarmStart};
 pub use stretching::Stretching;
-pub use subsystem::{
-    Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, Linearised, PartRows, Rows, Size, Subsystem, Traits,
-    Weights,
-};
+pub use subsystem::{Bodies, Dynamics, Energy, Linearised, Rows, Size, Subsystem, Traits, Weights};
 pub use workspace::{Account, SolverSettings, WorkCounts, Workspace};
 
 /// A point, direction, impulse or relative velocity in D dimensions.

@@ -12,8 +12,9 @@ use super::beam;
 use super::beam::line::{self, Deflecting, Line};
 use super::beam::motion::MovingSupports;
 use super::modal_motion::{self, ModalMotion};
+use crate::compliance::couple_by_solving;
 use crate::small::{self, add_outer};
-use crate::subsystem::{couple_by_solving, dot};
+use crate::subsystem::dot;
 use crate::{
     BeamFace, BeamSurface, Bodies, Compliance, Coupling, Dynamics, Energy, FactorError, Motion, PartRows, Propagator,
     Rows, SignalLoad, Size, Traits, Vector, Weights,

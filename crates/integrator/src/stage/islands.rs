@@ -10,8 +10,8 @@
 use super::kept::Kept;
 use super::solve::{couple, couple_into};
 use super::{ContactError, ContactRows, ContactStage, Members, Over, Problem};
+use crate::compliance::Span;
 use crate::laws::{Laws, join};
-use crate::subsystem::Span;
 use crate::{Model, Responses, Workspace};
 use teeter_contact::{Incidence, Outcome};
 

@@ -1,7 +1,7 @@
 //! The Jacobian rows of a stage's contacts.
 
+use crate::compliance::Span;
 use crate::small::add_scaled;
-use crate::subsystem::Span;
 use crate::{Mismatch, Model, PartRows, Rows, Vector};
 use teeter_detect::Candidate;
 

@@ -1,9 +1,9 @@
 //! From posed contacts to impulses, and to velocities.
 
 use super::{ContactError, ContactRows, ContactStage, Over, Problem, Rule};
+use crate::compliance::Span;
 use crate::laws::{Laws, join};
 use crate::mismatch::length;
-use crate::subsystem::Span;
 use crate::{Coupling, Model, Responses, Workspace};
 use teeter_contact::{Block, Outcome};
 

@@ -7,8 +7,8 @@
 //! ([`WBackend::CachedColumns`]).
 
 use super::{SharedFactors, matrix_weights};
+use crate::compliance::{couple_by_solving, respond_by_solving};
 use crate::small::{add_outer, add_scaled};
-use crate::subsystem::{couple_by_solving, respond_by_solving};
 use crate::{Compliance, Coupling, FactorError, PartRows, Vector, Weights};
 use nalgebra::Matrix2;
 use std::sync::Arc;
@@ -415,7 +415,7 @@ impl Columns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::subsystem::Span;
+    use crate::compliance::Span;
     use teeter_beam::{BeamSpec, Section, Support};
     use teeter_contact::Block;
 
