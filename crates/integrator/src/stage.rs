@@ -1,5 +1,7 @@
 //! The contact stage: the way from candidates to impulses, for every scheme.
 
+mod asked;
+mod error;
 mod islands;
 mod kept;
 mod posed;
@@ -8,144 +10,18 @@ mod rows;
 mod solve;
 
 use crate::contact::{Contact, STILL, tangential};
-use crate::laws::is_impact;
 use crate::mismatch::{Identity, length};
 use crate::spring::Springs;
 use crate::{ImpactLaw, Memory, Mismatch, Model, PairLaw, SpringStep, State, Vector, WarmStart, Workspace};
+pub use asked::{Look, Over, Rule};
+use asked::{by_law, newton_shift};
+pub use error::ContactError;
 use islands::Islands;
 pub(crate) use posed::Problem;
 pub(crate) use rows::ContactRows;
 pub(crate) use solve::Members;
-use teeter_contact::{Block, ProblemError};
-use teeter_detect::{BodyId, Candidate};
-
-/// Why contacts can't be solved.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ContactError {
-    /// They don't make a problem.
-    #[error(transparent)]
-    Problem(#[from] ProblemError),
-    /// What was given doesn't belong to them.
-    #[error(transparent)]
-    Mismatch(#[from] Mismatch),
-    /// The step was abandoned by [`Workspace::cancel`].
-    #[error("the step was abandoned, as its caller wanted")]
-    Cancelled,
-    /// A law that has no meaning over such a time.
-    #[error("pair {pair} has {law}, which has no meaning {over}: leave its contacts out of this stage")]
-    Law {
-        /// The pair.
-        pair: u32,
-        /// The law.
-        law: &'static str,
-        /// Over what time.
-        over: &'static str,
-    },
-    /// A contact that was not posed.
-    #[error(
-        "contact {contact} of the stage was not posed: ContactStage::pose does that for all, ContactStage::set for one"
-    )]
-    Unposed {
-        /// Its number.
-        contact: usize,
-    },
-    /// Rules that can't be solved together.
-    #[error("contact {contact} slides in a given direction, which goes with contacts of the standard law only")]
-    Rules {
-        /// The contact that slides.
-        contact: usize,
-    },
-    /// A body whose points' accelerations aren't known.
-    #[error("body {} doesn't say how its points are accelerated by their velocities: it needs Bodies::bias for contacts over accelerations", body.0)]
-    Bias {
-        /// The body.
-        body: BodyId,
-    },
-    /// Forces where impulses belong.
-    #[error(
-        "the stage holds forces, solved over accelerations, but a phase takes impulses: solve it over the phase's time, or hand the phase in without it"
-    )]
-    Forces,
-    /// No factors of the weights asked for.
-    #[error("subsystem {part} has no factors of these weights: ask Workspace::factors for them first")]
-    Factors {
-        /// Number of the subsystem.
-        part: usize,
-    },
-}
-
-/// What velocities and impulses of a stage are of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Over {
-    /// A step of size h (s), its mean velocity with the weight w of the end: by it laws know the work of their impulses.
-    Step {
-        /// h, s.
-        h: f64,
-        /// w, θ of a θ step.
-        weight: f64,
-    },
-    /// An instant: velocities jump. Restitution is that of an impact; laws with duration have no meaning.
-    Instant,
-    /// Forces and accelerations in place of impulses and velocities: 0 ≤ a_n ⊥ f_n ≥ 0, and Coulomb's law on accelerations. There is no
-    /// restitution; laws with duration have no meaning.
-    Acceleration,
-}
-
-/// How a contact answers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Rule<const D: usize> {
-    /// Nobody has said yet; a stage with such a contact is not solved.
-    Unposed,
-    /// Signorini's and Coulomb's law on U¹ + s.
-    Shifted,
-    /// Signorini's law on U¹ + s alone, as in a projection.
-    Frictionless,
-    /// Signorini's law on U¹ + s, with friction −μ p_n d: of a contact that slides in the direction d (a unit vector without normal part),
-    /// whatever its velocity becomes.
-    SlidesAlong(Vector<D>),
-    /// In two phases by Poisson's law; the coefficients of restitution act in the second.
-    Poisson {
-        /// The part of the impulse of compression that is given back.
-        e: f64,
-        /// The tangential coefficient of restitution.
-        tangential: f64,
-    },
-    /// As shifted, with the normal shift made smaller where the impact would make energy.
-    Energetic,
-    /// By a force law over the step.
-    Spring(SpringStep),
-}
-
-/// Where contacts are looked for.
-#[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
-pub struct Look<'a> {
-    /// Coordinates at which gaps and rows are taken.
-    pub at: &'a [f64],
-    /// Largest gap there of a contact that takes part, m.
-    pub within: f64,
-    /// Where the motion without contacts ends: contacts with duration take part if that is inside their surface. Without it, `at` stands
-    /// for it.
-    pub free: Option<&'a [f64]>,
-}
-
-impl<'a> Look<'a> {
-    /// At these coordinates, for contacts with a gap of at most `within` (m).
-    #[must_use]
-    pub fn new(at: &'a [f64], within: f64) -> Self {
-        Self { at, within, free: None }
-    }
-
-    /// With the end of the motion without contacts, for those with duration.
-    #[must_use]
-    pub fn with_free_end(mut self, q: &'a [f64]) -> Self {
-        self.free = Some(q);
-        self
-    }
-}
+use teeter_contact::Block;
+use teeter_detect::Candidate;
 
 /// The contacts of one configuration with their rows, their problem, and what became of it: the only way from candidates to impulses.
 /// A scheme owns as many stages as it has use for; each keeps its memory, so that it allocates only where there are more contacts
@@ -697,37 +573,3 @@ impl<const D: usize> ContactStage<D> {
 /// Contacts that are reserved for at the most; beyond it, a step with more contacts than ever before allocates. The
 /// dense operator of this many takes 2 MB in the plane.
 pub(crate) const RESERVED_CONTACTS: usize = 256;
-
-/// The part of the tangential velocity that comes back: of a contact that approaches.
-#[inline]
-fn tangential_restitution<const D: usize>(law: &PairLaw, contact: &Contact<D>, u_before: &Vector<D>) -> f64 {
-    if !contact.persisting && u_before[0] < 0.0 { law.tangential_restitution } else { 0.0 }
-}
-
-/// The shift of a contact by Newton's law.
-#[inline]
-fn newton_shift<const D: usize>(law: &PairLaw, contact: &Contact<D>, u_before: &Vector<D>) -> Vector<D> {
-    let mut shift = tangential(u_before) * tangential_restitution(law, contact, u_before);
-    shift[0] = law.restitution * u_before[0].min(0.0);
-    shift
-}
-
-/// Shift and rule of a contact by an impact law.
-fn by_law<const D: usize>(
-    law: &PairLaw,
-    contact: &Contact<D>,
-    u_before: &Vector<D>,
-    u_free: &Vector<D>,
-) -> (Vector<D>, Rule<D>) {
-    let (e, tangential_e) = (law.restitution, tangential_restitution(law, contact, u_before));
-    match law.impact {
-        ImpactLaw::Newton => (newton_shift(law, contact, u_before), Rule::Shifted),
-        ImpactLaw::Poisson => (Vector::zeros(), Rule::Poisson { e, tangential: tangential_e }),
-        ImpactLaw::Energetic => {
-            let mut shift = tangential(u_before) * tangential_e;
-            shift[0] = if is_impact(e, u_before, u_free) { e * u_before[0] } else { 0.0 };
-            (shift, Rule::Energetic)
-        }
-        ImpactLaw::KelvinVoigt { .. } | ImpactLaw::HuntCrossley { .. } => (Vector::zeros(), Rule::Shifted),
-    }
-}
