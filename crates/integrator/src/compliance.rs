@@ -30,14 +30,14 @@ pub trait Compliance<const D: usize>: Send + Sync {
     /// Becomes the inverse of the same combination at coordinates `q`, whatever earlier updates
     /// there were; allocates nothing. A scheme calls it before it solves, with the coordinates at
     /// which it takes the internal forces, if the subsystem's matrices [follow its
-    /// coordinates](Traits). If the matrix is not positive definite there, solutions must be NaN:
+    /// coordinates](crate::Traits). If the matrix is not positive definite there, solutions must be NaN:
     /// the step then ends as diverged.
     fn update(&mut self, q: &[f64]) {
         let _ = q;
     }
 
     /// Becomes the inverse of `mass·M + damping·C + stiffness·(K + tension·G) + weight·g gᵀ`, with its
-    /// own weights, of a subsystem that [stretches](Dynamics::stretching), whatever updates there were
+    /// own weights, of a subsystem that [stretches](crate::Dynamics::stretching), whatever updates there were
     /// before; `tension` (N) and `weight` are at least 0. Allocates nothing. If the matrix is not
     /// positive definite, solutions must be NaN. The default leaves it as it is: right where nothing
     /// stretches.
@@ -63,7 +63,7 @@ pub trait Compliance<const D: usize>: Send + Sync {
         false
     }
 
-    /// `f ← W f`; zero for [driven and held](Traits) velocities, as their rows and columns of W are
+    /// `f ← W f`; zero for [driven and held](crate::Traits) velocities, as their rows and columns of W are
     /// zero.
     fn solve(&mut self, f: &mut [f64]);
 

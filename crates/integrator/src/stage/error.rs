@@ -14,7 +14,7 @@ pub enum ContactError {
     /// What was given doesn't belong to them.
     #[error(transparent)]
     Mismatch(#[from] Mismatch),
-    /// The step was abandoned by [`Workspace::cancel`].
+    /// The step was abandoned by [`Workspace::cancel`](crate::Workspace::cancel).
     #[error("the step was abandoned, as its caller wanted")]
     Cancelled,
     /// A law that has no meaning over such a time.
