@@ -33,6 +33,7 @@ mod settings;
 mod shapes;
 mod sides;
 mod stacks;
+mod static_starts;
 mod supports;
 #[cfg(feature = "parallel")]
 mod threads;
