@@ -202,6 +202,7 @@ pub use faer;
 pub use forces::{Actions, PeakStress, Reaction, SectionForce, SectionForces, SpanLoad};
 pub use load::{DistributedLoad, Load, MovingLoad, NodalLoad};
 pub use matrix::MatrixEntry;
+pub use mesh::SAME_PLACE;
 pub use section::{Profile, Section};
 pub use shape::{AxialShape, Deflection, DeflectionBounds, ShapeAt};
 pub use spec::{Axial, BeamSpec, Damping, DampingRatio, Foundation, InnerSupport, Lump, MAX_ELEMENTS, Segment};

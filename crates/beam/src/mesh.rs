@@ -3,9 +3,9 @@
 use crate::error::BeamError;
 use crate::spec::{BeamSpec, MAX_ELEMENTS};
 
-/// A place within this part of the span of a node is at the node: nine digits, so that 0.1 + 0.2 is
-/// 0.3.
-const SAME_PLACE: f64 = 1e-9;
+/// Places along a beam that are no further apart than this part of its span are the same, such as
+/// that of a support and of a node: nine digits, so that 0.1 + 0.2 is 0.3.
+pub const SAME_PLACE: f64 = 1e-9;
 
 /// The shortest element, as a part of the span.
 pub(crate) const SHORTEST: f64 = 1e-6;

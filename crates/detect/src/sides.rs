@@ -80,6 +80,10 @@ const FACING: f64 = -0.25;
 /// Depths below two sides that differ by less than this part of the size of the shape are alike.
 const ALIKE: f64 = 1e-3;
 
+/// A point is on the boundary of a shape if it is outside by no more than this part of its distance from the origin and the shape's size:
+/// the rounding of a place in the body's coordinates.
+const ON_BOUNDARY: f64 = 8.0 * f64::EPSILON;
+
 /// Summits under one side that are told apart.
 pub const MOST_SUMMITS: usize = 8;
 
@@ -302,11 +306,18 @@ impl Summits {
 
 impl PlacedSide<'_> {
     /// Whether a point lies inside the part. One that is behind this side's line may still be outside, past another side: when a block tips
-    /// over the end of a beam, the end is behind the line of its far side.
+    /// over the end of a beam, the end is behind the line of its far side. On the boundary it lies inside, whatever rounding says: what
+    /// carries a base would be lost there.
     fn holds(&self, place: &Vector<2>) -> bool {
         let Outline { corners, normals, radius, frame, .. } = &self.outline;
         let local = frame.local(place);
-        corners.iter().zip(*normals).all(|(corner, normal)| normal.dot(&(local - corner)) <= *radius)
+        let within = *radius + ON_BOUNDARY * (place.norm() + self.size());
+        corners.iter().zip(*normals).all(|(corner, normal)| normal.dot(&(local - corner)) <= within)
+    }
+
+    /// Of the outline, from the mass centre, m.
+    fn size(&self) -> f64 {
+        self.outline.corners.iter().map(|corner| corner.norm()).fold(0.0, f64::max)
     }
 
     /// Whether a point of the surface that lies inside the part came in through this side. An end that carries a base is on the boundary,
@@ -317,8 +328,7 @@ impl PlacedSide<'_> {
         let (local, up) = (frame.local(&end.place), frame.unturned(&end.normal));
         let lies_over = || corners.iter().zip(*normals).filter(|(_, normal)| normal.dot(&up) < FACING);
         let height = |(corner, normal): (&Vector<2>, &Vector<2>)| normal.dot(&(local - corner));
-        let size = corners.iter().map(|corner| corner.norm()).fold(0.0, f64::max);
-        let least = lies_over().map(height).fold(f64::NEG_INFINITY, f64::max) - ALIKE * size;
+        let least = lies_over().map(height).fold(f64::NEG_INFINITY, f64::max) - ALIKE * self.size();
         let squarest = lies_over().filter(|side| height(*side) >= least).map(|(_, normal)| normal.dot(&up));
         let own = self.local_normal.dot(&up);
         self.holds(&end.place)

@@ -45,6 +45,7 @@ mod held;
 pub mod keys;
 mod layout;
 mod left_out;
+mod mass_ratio;
 mod meeting;
 pub mod mesh_error;
 pub mod number_table;

@@ -8,7 +8,9 @@ use crate::mesh_error::MeshComparison;
 use crate::resolve::names::table_of;
 use crate::scene::{BeamScene, BlockScene, ForceScene, Placement, Scene, SupportingBody};
 use crate::solve_digits::FewDigits;
-use crate::{deflection, flexibility, rocking, signal_resolution, stable_step, swing, unused_keys, wording};
+use crate::{
+    deflection, flexibility, mass_ratio, rocking, signal_resolution, stable_step, swing, unused_keys, wording,
+};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use teeter_beam::{Axial, Beam};
@@ -73,6 +75,7 @@ pub(crate) fn warnings(scene: &Scene, document: &Document, measures: &BeamMeasur
     warnings.extend(step(scene, document));
     warnings.extend(loosely_solved(scene, document));
     warnings.extend(unresolved_contacts(scene, document));
+    warnings.extend(mass_ratio::warning(scene, document));
     warnings
 }
 

@@ -354,12 +354,17 @@ impl StaticModel {
     /// The beams with a static start, what stands on them, and what props them.
     fn of(scene: &Scene) -> Self {
         let beams: Vec<usize> = (0..scene.beams.len()).filter(|&k| scene.beams[k].static_start).collect();
-        let placement = |block: usize| Some(&scene.blocks[block].placement);
-        let carried =
-            |block: &usize| carried_by(scene.blocks.len(), *block, placement).is_some_and(|beam| beams.contains(&beam));
         let props = props(scene, &beams);
-        let blocks = (0..scene.blocks.len()).filter(|block| carried(block) || props.contains(block));
-        Self { blocks: blocks.collect(), beams }
+        let mut bodies = Self { blocks: Vec::new(), beams };
+        let blocks = (0..scene.blocks.len()).filter(|k| bodies.carrier(scene, *k).is_some() || props.contains(k));
+        bodies.blocks = blocks.collect();
+        bodies
+    }
+
+    /// Which of its beams carries a block.
+    fn carrier(&self, scene: &Scene, block: usize) -> Option<usize> {
+        let placement = |block: usize| Some(&scene.blocks[block].placement);
+        carried_by(scene.blocks.len(), block, placement).filter(|beam| self.beams.contains(beam))
     }
 
     /// The model, with its pairs.
@@ -376,12 +381,14 @@ impl StaticModel {
             for force in scene.forces.iter().filter(|force| force.block == k) {
                 blocks = blocks.with_load(driven::block_load(force, number))?;
             }
-            // Prescribed coordinates stay in place, except for the height: the block rests on the
-            // beam.
-            let [x, _, angle] = scene.blocks[k].motion.0.each_ref().map(Option::is_some);
-            for (coordinate, stays) in
-                [(BlockCoordinate::X, x), (BlockCoordinate::Turn, angle || foot_of(scene, k).is_some())]
-            {
+            // Prescribed coordinates stay in place, except for the height of what rests on the beam:
+            // that follows the beam, but what props it doesn't.
+            let [x, y, angle] = scene.blocks[k].motion.0.each_ref().map(Option::is_some);
+            for (coordinate, stays) in [
+                (BlockCoordinate::X, x),
+                (BlockCoordinate::Y, y && self.carrier(scene, k).is_none()),
+                (BlockCoordinate::Turn, angle || foot_of(scene, k).is_some()),
+            ] {
                 if stays {
                     blocks = blocks.with_motion(number, coordinate, Motion::still())?;
                 }

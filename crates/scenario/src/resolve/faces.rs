@@ -35,13 +35,14 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// Reports beams with a static start that neither supports nor, in a scene that could be
-    /// resolved, blocks under them hold.
+    /// Reports beams with a static start that neither supports nor blocks under them hold. In a
+    /// scene that couldn't be resolved nothing is known of these.
     pub(super) fn report_unheld(&mut self, scene: Option<&Scene>) {
-        for unheld in std::mem::take(&mut self.unheld) {
-            let is_it = |surface: SupportingBody| matches!(surface, SupportingBody::Beam(k) if scene.is_some_and(|scene| scene.beams[k].name == unheld.beam));
-            let mut contacts = scene.into_iter().flat_map(|scene| &scene.contacts);
-            if !contacts.any(|contact| contact.face == BeamFace::Lower && is_it(contact.surface)) {
+        let unheld = std::mem::take(&mut self.unheld);
+        let Some(scene) = scene else { return };
+        for unheld in unheld {
+            let is_it = |surface: SupportingBody| matches!(surface, SupportingBody::Beam(k) if scene.beams[k].name == unheld.beam);
+            if !scene.contacts.iter().any(|contact| contact.face == BeamFace::Lower && is_it(contact.surface)) {
                 self.error(&format!("beam.{}.start", unheld.beam), unheld.rule, unheld.remedy);
             }
         }

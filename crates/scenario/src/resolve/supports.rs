@@ -1,12 +1,9 @@
 //! Resolves supports, masses and meshes of beams.
 
-use teeter_beam::{Hold, InnerSupport, Lump, Support};
+use teeter_beam::{Hold, InnerSupport, Lump, SAME_PLACE, Support};
 
 use super::Resolver;
 use crate::value::Item;
-
-/// Positions within this fraction of the span are the same: nine digits.
-const SAME_PLACE: f64 = 1e-9;
 
 /// The numbers and words of a support, by key.
 struct SupportKeys<'a> {

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
 
 mod allocations;
+mod around_ends;
 mod beams;
 mod carried;
 mod crowds;
@@ -34,6 +35,7 @@ mod settings;
 mod shapes;
 mod sides;
 mod stacks;
+mod static_starts;
 mod supports;
 #[cfg(feature = "parallel")]
 mod threads;

@@ -201,3 +201,53 @@ fn a_corner_that_glides_off_a_side_is_located() {
         assert!(off < bound, "{step}: {off:e}");
     }
 }
+
+/// How far a stack of boxes drifts in half a second under a load so many times as heavy, and what is warned of before.
+fn under_load(boxes: u32, ratio: &str, friction: f64) -> (f64, Vec<String>) {
+    let stacked = format!("on = 'ground'\nat = '0 m'\nrepeat = {{ count = {boxes}, stacked = true }}");
+    let load = load_of("heavy").replace("box-19", &format!("box-{boxes}"));
+    let text = scene("end = '0.5 s'\nstep = '1 ms'", &stacked, &load)
+        .replace("2.7e6 kg/m^3", &format!("{} kg/m^3", 2700.0 * ratio.parse::<f64>().unwrap()))
+        .replace("friction = 0.5", &format!("friction = {friction}"));
+    let found = teeter_scenario::load(text.as_bytes(), "scene", "scene", &[]).unwrap();
+    let warnings = found.warnings.iter().map(|found| found.rule.clone()).collect();
+    (drift(&mut Simulation::new(&found.scene).unwrap()), warnings)
+}
+
+/// What a load squeezes out by as little as rounding leaves of its weight is warned of before the run; what holds is not.
+#[test]
+fn loads_that_stacks_bear_are_not_warned_of_and_others_are() {
+    for (ratio, friction, most) in
+        [("1e3", 0.0, 1e-8), ("0.9e5", 0.0, 1e-5), ("1e3", 0.5, 1e-10), ("0.9e6", 0.3, 1e-6), ("0.9e6", 0.5, 1e-6)]
+    {
+        for boxes in [4, 11, 19] {
+            let (drift, warnings) = under_load(boxes, ratio, friction);
+            assert!(drift < most, "{boxes} boxes, {ratio}, {friction}: {drift:e} m");
+            assert!(warnings.is_empty(), "{boxes} boxes, {ratio}, {friction}: {warnings:?}");
+        }
+    }
+    for (ratio, friction) in [("3e5", 0.0), ("1e7", 0.0), ("1e7", 0.5), ("1e-7", 0.5)] {
+        let (_, warnings) = under_load(4, ratio, friction);
+        assert!(warnings.len() == 1 && warnings[0].contains("times as heavy as"), "{ratio}, {friction}: {warnings:?}");
+    }
+}
+
+/// A light block on a heavy one isn't squeezed; one that moves as prescribed, such as a fixed one, has no weight to do it.
+#[test]
+fn only_what_presses_on_a_light_block_is_warned_of() {
+    let of = |below: &str, keys: &str| {
+        let text = scene("end = '1 s'\nstep = '1 ms'", "on = 'load'\nat = '0 m'", "")
+            .replace("friction = 0.5", "friction = 0");
+        let load = format!(
+            "[block.load]\nmaterial = 'heavy'\nwidth = '10 cm'\nheight = '10 cm'\ndepth = '10 cm'\n{below}\n{keys}\n[contact.floor]"
+        );
+        let text = text.replace("[contact.floor]", &load).replace("2.7e6", "1.35e9");
+        teeter_scenario::load(text.as_bytes(), "scene", "scene", &[])
+            .unwrap_or_else(|e| panic!("{e}\n{text}"))
+            .warnings
+            .len()
+    };
+    assert_eq!(of("on = 'ground'\nat = '0 m'", ""), 0, "5e5 times as heavy, below");
+    let flies = "position = ['0 m', '5 cm']";
+    assert_eq!(of(flies, "motion = { velocity = ['0 m/s', '0 m/s'], only = 'x', angular_velocity = '0 rad/s' }"), 0);
+}

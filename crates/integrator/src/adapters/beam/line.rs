@@ -4,7 +4,7 @@
 use super::{BeamFace, BeamSurface};
 use crate::Rows;
 use nalgebra::Vector2;
-use teeter_beam::{Deflection, DeflectionBounds, Hold, InnerSupport};
+use teeter_beam::{Deflection, DeflectionBounds, Hold, InnerSupport, SAME_PLACE};
 use teeter_detect::{Frame, HalfSpace, Kinematics, Summit, SurfacePoint};
 
 /// Deflection and slope along a beam as linear functions of its coordinates.
@@ -224,9 +224,6 @@ const EDGE: f64 = 1e-9;
 /// An element is nearly straight if its slope changes by no more than this, rad: as much as a base turns in a step or less, so that it may
 /// come down flat on what is bent by less, without ever rolling onto it.
 const STRAIGHT: f64 = 1e-4;
-
-/// A node is at a support if they are no further apart than this part of the span.
-const SAME_PLACE: f64 = 1e-9;
 
 /// Where in (0, 1] a parabola with these values at 0, ½ and 1 goes from above zero to below.
 fn falls_through_zero([start, middle, end]: [f64; 3]) -> Option<f64> {
