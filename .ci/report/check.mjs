@@ -10,7 +10,7 @@ import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 import { keyboardWalk, playByKeys, plotsWithoutWords, violations } from "./accessible.mjs";
 import { pageData } from "./columns.mjs";
-import { flatAtFirst, outOfPicture, specksAtFirst, unfoldedOnPaper, unplotted, wrongVerdicts } from "./motion.mjs";
+import { flatAtFirst, gravityOf, outOfPicture, specksAtFirst, unfoldedOnPaper, unplotted, wrongVerdicts } from "./motion.mjs";
 import { otherAngles, otherLegends } from "./legends.mjs";
 import { leaningApart, wrongSaved } from "./picture.mjs";
 import { overlaps } from "./overlaps.mjs";
@@ -102,7 +102,7 @@ async function ofRun(page, run, problem, isFirst) {
   (await page.evaluate(otherLegends)).forEach((text) => problem(`refers to another legend: ${text}`));
   (await page.evaluate(unfoldedOnPaper)).forEach((text) => problem(`unfolds on paper: ${text}`));
   const data = pageData(await page.$eval("#data", (element) => element.textContent));
-  wrongVerdicts(summary, trajectory, data).forEach(problem);
+  wrongVerdicts(summary, trajectory, data, gravityOf(readFileSync(join(run, "scene.toml"), "utf8"))).forEach(problem);
   (await unplotted(page, trajectory)).forEach(problem);
   const envelopes = join(run, "envelopes.csv");
   plotsOfRounding(await plotsDrawn(page), data, summary, existsSync(envelopes) ? table(envelopes) : []).forEach(problem);
