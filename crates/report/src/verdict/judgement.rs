@@ -97,8 +97,10 @@ impl Seen {
         let turned = self.angle - self.start[2];
         // Where pieces of a profile meet, a base goes a little less far than its feet. What comes down turns over as it does.
         let apart = if watched.carrier.is_terrain() || began_in_flight { watched.base() } else { least };
+        // Which turn it made before and which after isn't told.
+        let turns_as_it_falls = matches!(what, Fate::Overturned | Fate::Left);
         let is_free = matches!(block.placement, Placement::Free { .. });
-        let may_tumble = is_free && !watched.is_round && what != Fate::Overturned;
+        let may_tumble = is_free && !watched.is_round && !turns_as_it_falls;
         let tumbled = self.began.filter(|_| may_tumble).map(|_| turned);
         let tilt = watched.against_carrier(layout, number, &state.q);
         let turns_on = |monitor: &&RockingMonitor| {
@@ -177,7 +179,7 @@ impl Seen {
             against: watched.against(layout, number, &state.q),
             still_from: self.still.filter(|_| rests.is_none() && !stopped),
             stands_from: since,
-            turned: (what == Fate::Overturned && turned.abs() >= TUMBLED).then_some(turned.abs()),
+            turned: (turns_as_it_falls && !watched.is_round && turned.abs() >= TUMBLED).then_some(turned.abs()),
             is_carried: rests.is_some() && {
                 let [vx, vy, spin] = watched.carrier.base_velocity([q[0], q[1]], layout, state);
                 // A record may end with the run.
@@ -189,7 +191,9 @@ impl Seen {
             on_what_moves: watched.carrier.word().filter(|_| {
                 // What rides on a driven block is told to stand on it.
                 let is_told = going == Some(Going::Rides) && watched.carrier.is_by_block();
-                (stopped || going.is_some_and(Going::stays)) && !is_told && carrier_moves()
+                (stopped || going.is_some_and(|going| going.stays() || going == Going::Bounces))
+                    && !is_told
+                    && carrier_moves()
             }),
             going,
             stopped_rocking: self
