@@ -143,6 +143,12 @@ impl Seen {
         // What rests on its beam from the start may have moved with it; where supports move it is told to stand on these.
         let moved = rests != Some(start) || (self.unmoved != Some(start) && watched.driven_until == 0.0);
         let is_here = matches!(what, Fate::Rests | Fate::Moves) && moved && !began_in_flight;
+        // What rests on a beam that goes along its axis goes with it.
+        let goes_along = |beam: usize| {
+            let place = &layout.beams[beam];
+            place.axial_displacement_at(&state.q[place.range.clone()], 0.0).abs() >= least
+        };
+        let taken_along = rests == Some(start) && watched.carrier.beam().is_some_and(goes_along);
         let beam = |when: bool| watched.carrier.beam().filter(|_| when).map(|beam| layout.beams[beam].name.clone());
         BodyVerdict {
             start,
@@ -202,7 +208,7 @@ impl Seen {
                 .filter(|_| going == Some(Going::Trembles) && has_stood && part.is_some_and(|part| part >= ROCKED)),
             tips,
             unmoved_from: self.unmoved.filter(|since| rests.is_some() && state.t - since >= watched.still_time),
-            stood_on: beam(is_here && self.never_moved(watched, least)),
+            stood_on: beam(taken_along || (is_here && self.never_moved(watched, least))),
             left_beam: beam(what == Fate::Left),
             fell_off: (what == Fate::Overturned)
                 .then(|| watched.carrier.below_an_end([q[0], q[1]], watched.reach, layout, &state.q))
