@@ -10,9 +10,9 @@ import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 import { keyboardWalk, playByKeys, plotsWithoutWords, violations } from "./accessible.mjs";
 import { pageData } from "./columns.mjs";
-import { flatAtFirst, outOfPicture, specksAtFirst, unfoldedOnPaper, unplotted, wrongVerdicts } from "./motion.mjs";
+import { flatAtFirst, gravityOf, outOfPicture, specksAtFirst, unfoldedOnPaper, unplotted, wrongVerdicts } from "./motion.mjs";
 import { otherAngles, otherLegends } from "./legends.mjs";
-import { leaningApart, wrongSaved } from "./picture.mjs";
+import { besideTheirBeams, leaningApart, wrongSaved } from "./picture.mjs";
 import { overlaps } from "./overlaps.mjs";
 import { plotsDrawn, plotsOfRounding } from "./rounding.mjs";
 
@@ -40,8 +40,8 @@ async function anyPage(page, problem) {
   (await keyboardWalk(page)).forEach(problem);
   (await plotsWithoutWords(page)).forEach(problem);
   (await page.evaluate(overlaps)).forEach((text) => problem(`texts overlap in ${text}`));
-  // Tables that fit a telephone, and those of records: numbers that one doesn't see without scrolling.
-  const cut = await page.$$eval(".fit, #records .scroll, #reactions .scroll", (all) => all.filter((one) => one.scrollWidth > one.clientWidth)
+  // Tables that fit a telephone, and those of records and half cycles: numbers that one doesn't see without scrolling.
+  const cut = await page.$$eval(".fit, #records .scroll, #reactions .scroll, #rocking .scroll", (all) => all.filter((one) => one.scrollWidth > one.clientWidth)
     .map((one) => one.querySelector("tr").textContent.trim()));
   cut.forEach((text) => problem(`numbers of a table are out of view: ${text}`));
   const wide = await page.$$eval("#tiles dd", (all) => all.filter((one) => one.scrollWidth > one.clientWidth || one.getClientRects().length > 1
@@ -98,11 +98,12 @@ async function ofRun(page, run, problem, isFirst) {
   // What doesn't depend on the window.
   (await wrongSaved(page)).forEach(problem);
   (await page.evaluate(leaningApart)).forEach(problem);
+  (await page.evaluate(besideTheirBeams)).forEach(problem);
   (await flatAtFirst(page, trajectory)).forEach(problem);
   (await page.evaluate(otherLegends)).forEach((text) => problem(`refers to another legend: ${text}`));
   (await page.evaluate(unfoldedOnPaper)).forEach((text) => problem(`unfolds on paper: ${text}`));
   const data = pageData(await page.$eval("#data", (element) => element.textContent));
-  wrongVerdicts(summary, trajectory, data).forEach(problem);
+  wrongVerdicts(summary, trajectory, data, gravityOf(readFileSync(join(run, "scene.toml"), "utf8"))).forEach(problem);
   (await unplotted(page, trajectory)).forEach(problem);
   const envelopes = join(run, "envelopes.csv");
   plotsOfRounding(await plotsDrawn(page), data, summary, existsSync(envelopes) ? table(envelopes) : []).forEach(problem);

@@ -71,14 +71,34 @@ export function unfoldedOnPaper() {
   return found;
 }
 
-const gravity = 9.81;
+/** The gravity of a scene, m/s² along x and y, from the text of scene.toml as run. */
+export function gravityOf(text) {
+  const [, given] = text.match(/^gravity = (.*)$/m) ?? [];
+  const numbers = (given ?? "9.81 m").match(/[-+.\de]+(?= m)/g).map(Number);
+  return numbers.length > 1 ? numbers : [0, -numbers[0]];
+}
 
 /**
- * Where the verdict isn't what the rows of trajectory.csv say, by the rules of docs/verdict.md for gravity of 9.81 m/s²; `data` is that of
- * the page, of which the shapes of the bodies are taken.
+ * The slope on which a block stands in a row, rad: NaN where the ground turns, or its base reaches over more than one piece of a profile.
  */
-export function wrongVerdicts(summary, trajectory, { scenery, frames }) {
+function slopeUnder({ profile, incline }, ground, reach, x) {
+  if (profile.length === 0) return incline;
+  if (ground !== null) return NaN;
+  const next = profile.findIndex(([at]) => at > x);
+  if (next <= 0) return NaN;
+  const [[x0, y0], [x1, y1]] = [profile[next - 1], profile[next]];
+  return x - reach > x0 && x + reach < x1 ? Math.atan2(y1 - y0, x1 - x0) : NaN;
+}
+
+/**
+ * Where the verdict isn't what the rows of trajectory.csv say, by the rules of docs/verdict.md; `data` is that of the page, of which the shapes of
+ * the bodies are taken, and `pull` the gravity.
+ */
+export function wrongVerdicts(summary, trajectory, { scenery, frames }, pull) {
   const problems = [];
+  const gravity = Math.hypot(...pull);
+  // By how much gravity leans from the vertical: what it leans to is downhill.
+  const leans = gravity > 0 ? Math.atan2(pull[0], -pull[1]) : 0;
   const [first, last] = [trajectory[0], trajectory[trajectory.length - 1]];
   const still = frames.ground === null;
   const turns = !still && frames.ground.slope.some((slope) => slope !== 0);
@@ -91,8 +111,15 @@ export function wrongVerdicts(summary, trajectory, { scenery, frames }) {
       say("there are no columns of it");
       continue;
     }
-    // On the level, a rectangle that stands as drawn at the start: what α means needs no more than its table.
-    const stands = block.alpha !== null && Math.abs(at(trajectory[0], "phi")) < block.alpha;
+    // From standing flat on what is below it, in parts of the way to the point of no return on that side, which is α from gravity.
+    const slope = (row) => slopeUnder(scenery, frames.ground, block.reach, at(row, "x"));
+    const share = (row, phi = at(row, "phi")) => {
+      const [turned, uphill] = [phi - slope(row), slope(row) - leans];
+      return turned > 0 ? turned / (block.alpha - uphill) : -turned / (block.alpha + uphill);
+    };
+    const stands = block.alpha !== null && share(trajectory[0]) < 1;
+    // As far as can be known from the table: not where its base lies over a kink.
+    const even = trajectory.every((row) => Number.isFinite(slope(row)));
     // What begins in free fall has a stance only from when it has settled, by which the rows before aren't measured.
     const [start, next] = trajectory;
     const falls = next !== undefined && at(next, "vy") - at(start, "vy") < -0.9 * gravity * (next.t - start.t);
@@ -101,13 +128,13 @@ export function wrongVerdicts(summary, trajectory, { scenery, frames }) {
     if (!touches && verdict.max_phi_over_alpha !== null) say("it touches nothing, but has a largest φ/α");
     // On a beam it is measured from that, of which the table has no slope.
     const bends = summary.model.beams.length > 0;
-    const level = touches && block.upright && stands && !falls && scenery.incline === 0 && !turns;
-    const beyond = (row) => Math.abs(at(row, "phi")) > block.alpha;
+    const level = touches && block.upright && stands && even && !falls && !turns;
+    const beyond = (row) => share(row) > 1;
     if (level && !bends) {
-      const share = largest(trajectory, (row) => at(row, "phi")) / block.alpha;
+      const most = largest(trajectory, (row) => share(row));
       // The table may lack the row of the largest angle.
-      if (share > verdict.max_phi_over_alpha * (1 + 1e-9) + 1e-12) say(`rows reach ${share} α, it says ${verdict.max_phi_over_alpha}`);
-      if (share < 0.98 * verdict.max_phi_over_alpha - 1e-3) say(`rows reach only ${share} α, it says ${verdict.max_phi_over_alpha}`);
+      if (most > verdict.max_phi_over_alpha * (1 + 1e-9) + 1e-9) say(`rows reach ${most} α, it says ${verdict.max_phi_over_alpha}`);
+      if (most < 0.98 * verdict.max_phi_over_alpha - 1e-3) say(`rows reach only ${most} α, it says ${verdict.max_phi_over_alpha}`);
     }
     if (level && verdict.what === "overturned") {
       if (!beyond(last)) say(`φ is within α at the end`);
@@ -119,12 +146,15 @@ export function wrongVerdicts(summary, trajectory, { scenery, frames }) {
       if (verdict.overturned_at < from - step || verdict.overturned_at > to + step) {
         say(`at ${verdict.overturned_at}, but the rows pass α between ${from} and ${to}`);
       }
-    } else if (level && beyond(last) && verdict.what !== "moves") {
-      say(`φ is beyond α at the end: ${at(last, "phi")}`);
+    } else if (touches && block.upright && block.alpha !== null && Number.isFinite(slope(last)) && !turns && ["rests", "slid", "rocks"].includes(verdict.what)) {
+      // What turned over in flight may be back on its base by whole turns, or lie on another side, as it then says.
+      const around = at(last, "phi") - 2 * Math.PI * Math.round((at(last, "phi") - slope(last)) / (2 * Math.PI));
+      const onBase = verdict.lies_on === "base" || (level && verdict.lies_on === null);
+      if (onBase && share(last, around) > 1) say(`φ is beyond α at the end: ${at(last, "phi")}`);
     }
     // A rectangle as drawn, at rest: which side faces down.
     if (block.alpha !== null && block.upright && !turns) {
-      const quarter = (at(last, "phi") - scenery.incline) / (Math.PI / 2);
+      const quarter = (at(last, "phi") - slope(last)) / (Math.PI / 2);
       const off = Math.abs(quarter - Math.round(quarter)) * 90;
       const side = ["base", "left side", "top", "right side"][((Math.round(quarter) % 4) + 4) % 4];
       if (verdict.rests_from === null ? verdict.lies_on !== null : off < 5 && verdict.lies_on !== side) {

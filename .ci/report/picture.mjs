@@ -51,3 +51,31 @@ export function leaningApart() {
   how.dispatchEvent(new Event("change"));
   return [...found];
 }
+
+/** Contacts with beams whose forces act where the picture has none of the beam: left or right of it. Runs in the page. */
+export function besideTheirBeams() {
+  const { scenery } = JSON.parse(document.getElementById("data").textContent);
+  const how = document.getElementById("network");
+  if (![...how.options].some(({ value }) => value === "arrows")) return [];
+  const before = how.value;
+  how.value = "arrows";
+  how.dispatchEvent(new Event("change"));
+  const root = document.getElementById("scene");
+  const slider = document.getElementById("time-slider");
+  const found = new Set();
+  for (let frame = 0; frame <= Number(slider.max); frame += Math.ceil(slider.max / 20)) {
+    slider.value = frame;
+    slider.dispatchEvent(new Event("input"));
+    for (const arrow of root.querySelectorAll(".force")) {
+      const { name, beam } = scenery.contacts[Number(arrow.dataset.contact)];
+      if (beam === null) continue;
+      const { a: scale, e: left } = root.getScreenCTM();
+      const end = left + scale * Number(arrow.getAttribute("d").match(/[-0-9.]+/g)[2]);
+      const box = root.querySelector(`[data-body="${CSS.escape(scenery.beams[beam].name)}"] .beam`).getBoundingClientRect();
+      if (end < box.left - 3 || end > box.right + 3) found.add(`a force of ${name} acts beside the beam that it acts on`);
+    }
+  }
+  how.value = before;
+  how.dispatchEvent(new Event("change"));
+  return [...found];
+}

@@ -117,3 +117,22 @@ fn meshio_reads_the_pictures() {
         assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
     }
 }
+
+/// A beam that columns take along by friction is written where it lies on them.
+#[test]
+fn a_beam_that_moves_along_its_axis_is_written_where_it_is() {
+    let folder = run("taken-along", "../.ci/scenes/beam-taken-along.toml", &[]);
+    let rows = columns(&folder, &["left.x", "left.y"]);
+    let last = std::fs::read_dir(folder.join("vtk")).unwrap().count() - 2; // the list, and the first picture
+    let points = |number: usize| {
+        array(&std::fs::read_to_string(folder.join(format!("vtk/picture-{number:04}.vtu"))).unwrap(), "Points")
+    };
+    // Three rectangles, then the beam from the left on.
+    let left = |number: usize| points(number)[3 * 12];
+    let column = rows.last().unwrap()[0] - rows[0][0];
+    let went = left(last) - left(0);
+    assert!(
+        left(0) == 0.0 && column > 0.4 && (went - column).abs() < 1e-3,
+        "the beam went {went} m, its columns {column} m"
+    );
+}

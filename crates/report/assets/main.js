@@ -509,6 +509,7 @@
     printed = { frame, pictures: htmlElement("div", "printed", undefined, byId("stage")) };
     for (const k of telling()) {
       show(k);
+      scene.crop(true);
       const figure = htmlElement("figure", "", undefined, printed.pictures);
       const picture = scene.root.cloneNode(true);
       picture.removeAttribute("id");
@@ -517,12 +518,14 @@
       htmlElement("figcaption", "", `${why}: ${byId("time-readout").textContent} ${byId("scene-readout").textContent}`, figure);
     }
     show(printed.frame);
+    scene.crop(true);
     if (active.length > 3) plots.choose(...strongestContacts(3)); // More would be sheets of plots that look alike.
     // Paper has its own width; drawn for that of the screen, the plots' type would come out too small or too large.
     plots.drawFor(680);
   });
   window.addEventListener("afterprint", () => {
     if (!printed) return;
+    scene.crop(false);
     printed.pictures.remove();
     printed = null;
     if (active.length > 3) plots.choose(Number(byId("choice").querySelector("select").value));

@@ -28,10 +28,10 @@ const scene = (() => {
     scenery.contacts.filter((contact) => contact.block === block && contact.beam !== null && !contact.lower)
       .map((contact) => contact.beam));
 
-  /** How far the supports of a beam have moved. */
+  /** How far a beam has moved as a whole. */
   function moved(beam, at) {
-    const { supports } = frames.beams[beam];
-    return supports ? [supports[0][at], supports[1][at]] : [0, 0];
+    const way = frames.beams[beam].moved;
+    return way ? [way[0][at], way[1][at]] : [0, 0];
   }
 
   /** The left end of a beam. */
@@ -171,6 +171,19 @@ const scene = (() => {
     view = { ...whole };
     setAll(root, { viewBox: `0 0 ${width} ${height}`, width, height });
     build();
+  }
+
+  /** Cuts off what is empty above and below all that is drawn, for which paper has no room, or shows it again. */
+  function crop(on) {
+    const all = [0, height];
+    const { d: scale, f: top } = root.getScreenCTM();
+    const heights = [...root.querySelectorAll("path, circle, text")].map((one) => one.getBoundingClientRect())
+      .filter((box) => box.width > 0 || box.height > 0).map((box) => [box.top, box.bottom].map((y) => (y - top) / scale))
+      .filter(([low, high]) => high > 0 && low < height);
+    const edge = 8;
+    const [from, to] = on && heights.length
+      ? [Math.max(0, Math.min(...heights.map(([y]) => y)) - edge), Math.min(height, Math.max(...heights.map(([, y]) => y)) + edge)] : all;
+    setAll(root, { viewBox: `0 ${from.toFixed(1)} ${width} ${(to - from).toFixed(1)}`, height: (to - from).toFixed(1) });
   }
 
   const isWhole = () => view.scale === whole.scale && view.x === whole.x && view.y === whole.y;
@@ -411,8 +424,8 @@ const scene = (() => {
       const edge = beam.top ? (beam.thickness / 2) * view.scale : 0;
       const line = svgElement("path", { class: "beam" }, group);
       const low = py(beam.y) - edge + thickness;
-      drawSupport(group, beam.supports[0], px(beam.x), low, false, false);
-      drawSupport(group, beam.supports[1], px(beam.x + beam.span), low, true, !beam.held);
+      beam.supports.forEach((kind, end) =>
+        drawSupport(group, kind, px(beam.x + end * beam.span), low, end === 1, !beam.held[end]));
       for (const [x, kind] of beam.inner) drawSupport(group, kind, px(beam.x + x), low, true, true);
       for (const [from, to] of beam.foundations) drawFoundation(group, [px(beam.x + from), px(beam.x + to)], low);
       const held = [0, beam.span, ...beam.inner.map(([x]) => x)];
@@ -788,6 +801,7 @@ const scene = (() => {
   return {
     draw,
     layout,
+    crop,
     zoomBy,
     panBy,
     follow,

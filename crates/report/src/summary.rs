@@ -11,7 +11,7 @@ pub(crate) use passages::{Passages, PeakRow};
 pub use records::RecordSummary;
 
 use crate::told::Told;
-use crate::verdict::{BodyVerdict, StopReason, headline};
+use crate::verdict::{BodyVerdict, OfBeams, StopReason, fallen_beams, headline};
 use crate::{BeamRecord, ImpactRow, LargestDeflection, LargestStress, ReactionRange, Record, Warning};
 use crate::{made_energy, own_weight, taken_energy, unlocated};
 use serde::Serialize;
@@ -326,7 +326,10 @@ impl Summary {
                 true => {
                     let moved = |number| record.fates.moved(number, layout, state);
                     let told = as_told(scene, &verdict, record);
-                    headline(scene, state, &told, (&beams, &deflections), moved)
+                    let fallen = fallen_beams(scene, layout, state, moved);
+                    let has_impacts = record.impact_count > 0;
+                    let of_beams = OfBeams { borne: &beams, deflections: &deflections, fallen: &fallen, has_impacts };
+                    headline(scene, state, &told, &of_beams, moved)
                 }
                 false => String::new(),
             },

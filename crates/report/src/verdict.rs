@@ -7,6 +7,7 @@
 mod body;
 mod carrier;
 mod columns;
+mod fallen_beams;
 mod falling;
 mod floor;
 mod going;
@@ -22,10 +23,11 @@ mod watch;
 
 pub use body::{BodyVerdict, Fate};
 use columns::{Column, Lean};
+pub(crate) use fallen_beams::{fallen_beams, is_carried};
 use falling::Joints;
 pub(crate) use going::Going;
 use going::Touched;
-pub(crate) use headline::{headline, part, percent};
+pub(crate) use headline::{OfBeams, headline, part, percent};
 pub use lying::Side;
 use serde::{Deserialize, Serialize};
 use sliding::Slides;
@@ -56,7 +58,7 @@ const TUMBLED: f64 = 0.75 * std::f64::consts::PI;
 const FLAT: f64 = 2.0;
 
 /// A block slid, in a word, if it did by this part of its base.
-const SLID: f64 = 0.01;
+pub(crate) const SLID: f64 = 0.01;
 
 /// A block that turns farther than ever at the end, and got to this part of its critical angle, tips: less may be the bending of a beam. The same part of
 /// it against what carries it tells that it isn't upright there: less is rounding.

@@ -109,6 +109,18 @@ impl BeamPlace {
         Some(self.deflection(&self.beam.shape_at(x)?, q))
     }
 
+    /// The displacement along its axis of the section at x (m, along the beam) for its own coordinates `q` (its rate for velocities), m; 0 of a beam
+    /// without axial dofs. Doesn't allocate.
+    #[must_use]
+    pub fn axial_displacement_at(&self, q: &[f64], x: f64) -> f64 {
+        let at = self.beam.axial_shape_clamped(x);
+        match &self.basis {
+            _ if !self.beam.has_axial_dofs() => 0.0,
+            None => at.displacement(q),
+            Some(basis) => q.iter().enumerate().map(|(index, own)| own * at.displacement(basis.shape(index))).sum(),
+        }
+    }
+
     /// The dofs of the beam for its own coordinates `q`.
     #[must_use]
     pub fn dofs(&self, q: &[f64]) -> Vec<f64> {

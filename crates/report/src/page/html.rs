@@ -9,6 +9,7 @@ use super::panels::Panels;
 use super::recorder::PageRecorder;
 use super::rocking::half_cycles_and_left_out;
 use super::{accelerograms, content, data, thrust};
+use crate::verdict::SLID;
 use crate::{Summary, with_digits};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -63,7 +64,7 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("verdict", verdict(summary)),
         ("subtitle", subtitle(summary)),
         ("warnings", warnings(summary)),
-        ("tiles", tiles::tiles(&values, summary)),
+        ("tiles", tiles::tiles(&values, summary, |body| slid_on(recorder, &panels, body))),
         ("residual", scientific(summary.energy.largest_residual)),
         ("notdrawn", not_drawn(&panels)),
         ("shapes", beams::shapes(recorder, &panels.units)),
@@ -77,6 +78,21 @@ pub fn render(recorder: &PageRecorder, summary: &Summary, scene_toml: &str) -> S
         ("settings", escaped(scene_toml)),
     ]);
     filled(TEMPLATE, &parts)
+}
+
+/// What a block slid on by a hundredth of its size or more.
+fn slid_on<'r>(recorder: &'r PageRecorder, panels: &Panels, body: &str) -> Vec<&'r str> {
+    let scenery = &recorder.scenery;
+    let slips = panels.panels.iter().filter(|panel| panel.id.starts_with("slip-"));
+    let on = slips.filter_map(|panel| {
+        let contact = scenery.contacts.get(panel.of_contact.as_ref()?.0)?;
+        let block = &scenery.blocks[contact.block];
+        let far = content::largest(panel.lines.iter().flat_map(|line| &line.y));
+        (block.name == body && far >= SLID * block.reach).then_some(contact.surface.as_str())
+    });
+    let mut on: Vec<&str> = on.collect();
+    on.dedup();
+    on
 }
 
 /// The template with every `{{name}}` replaced; what is put in is not looked at again.
@@ -208,6 +224,15 @@ fn warnings(summary: &Summary) -> String {
 /// What isn't drawn, and why; empty if all is.
 fn not_drawn(panels: &Panels) -> String {
     let mut text = content::told(&panels.left_out);
+    if !panels.negligible.is_empty() {
+        let space = if text.is_empty() { "" } else { " " };
+        let each: Vec<String> = panels
+            .negligible
+            .iter()
+            .map(|(what, size)| format!("{what} (at most {})", with_prefix(*size, "J")))
+            .collect();
+        let _ = write!(text, "{space}Too small beside the energies for a plot: {}.", each.join(", "));
+    }
     if !panels.untraced.is_empty() {
         let space = if text.is_empty() { "" } else { " " };
         let _ = write!(

@@ -162,6 +162,8 @@ pub(crate) struct Panels {
     pub(crate) panels: Vec<TimePanel>,
     pub(crate) portraits: Vec<Portrait>,
     pub(crate) left_out: Vec<LeftOut>,
+    /// Energies and works that are too small beside the others for a plot, with how large they become, J.
+    pub(crate) negligible: Vec<(String, f64)>,
     /// Blocks whose velocity turns too often for a phase portrait.
     pub(crate) untraced: Vec<String>,
     /// The units that quantities have on this page.
@@ -223,6 +225,7 @@ impl Panels {
             panels: Vec::new(),
             portraits: Vec::new(),
             left_out: Vec::new(),
+            negligible: Vec::new(),
             untraced: Vec::new(),
         };
         let sums = (0..recorder.scenery.contacts.len()).map(|pair| panels.sum(recorder, pair));

@@ -1,7 +1,7 @@
 //! What is drawn of the bodies where they are in a picture: outlines of blocks and beams, the surface of the ground.
 
 use super::outline::Outline;
-use super::recorder::{BLOCK_FRAME, PageRecorder};
+use super::recorder::{BEAM_MOVED, BLOCK_FRAME, PageRecorder};
 
 /// Points in a row, m.
 pub(super) type Points = Vec<(f64, f64)>;
@@ -25,11 +25,12 @@ pub(super) fn beams(recorder: &PageRecorder, row: &[f64]) -> Vec<Points> {
     let mut moved_at = first + scenery.beams.iter().map(|beam| beam.points).sum::<usize>();
     let mut beams = Vec::with_capacity(scenery.beams.len());
     for (beam, place) in scenery.beams.iter().zip(&recorder.layout.beams) {
-        let shift = place.supports.as_ref().map_or([0.0; 2], |range| {
-            let shift = [row[moved_at], row[moved_at + 1]];
-            moved_at += range.len();
-            shift
-        });
+        let shift = if beam.moves(place) {
+            moved_at += BEAM_MOVED;
+            [row[moved_at - 2], row[moved_at - 1]]
+        } else {
+            [0.0; 2]
+        };
         let w = &row[first..first + beam.points];
         first += beam.points;
         let x = |k: usize| beam.x + shift[0] + beam.span * k as f64 / (beam.points - 1) as f64;
@@ -68,4 +69,47 @@ pub(super) fn ground(recorder: &PageRecorder, row: &[f64], from: f64, to: f64) -
     let within = profile.iter().copied().filter(|point| point[0] > left && point[0] < right);
     let surface = std::iter::once([left, height(left)]).chain(within).chain([[right, height(right)]]);
     Some(surface.map(|[a, b]| (x + cos * a - sin * b, y + sin * a + cos * b)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+    use teeter_integrator::Ended;
+    use teeter_scenario::simulation::Simulation;
+
+    /// Columns of blocks take a beam along that nothing else holds: it is drawn where it lies on them, elements or modes.
+    #[test]
+    fn a_beam_is_drawn_where_its_axial_motion_has_brought_it() {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.ci/scenes/beam-taken-along.toml");
+        let text = std::fs::read_to_string(file).unwrap();
+        for modes in [vec![], vec![("beam.lintel.model", "modes"), ("beam.lintel.modes.count", "12")]] {
+            let sets: Vec<_> = modes.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+            // The damping of its elements couples modes.
+            let text = if sets.is_empty() {
+                text.clone()
+            } else {
+                text.replace("damping_ratio = { mode = 3, ratio = 0.2 }\n", "")
+            };
+            let resolved = teeter_scenario::load(text.as_bytes(), "beam.toml", "beam", &sets).unwrap();
+            let mut simulation = Simulation::new(&resolved.scene).unwrap();
+            let mut recorder = PageRecorder::new(&resolved.scene, &simulation.layout);
+            assert_eq!(simulation.run(&mut [&mut recorder]).unwrap(), Ended::Complete);
+            let rows: Vec<_> = recorder.kept.frames.rows().collect();
+            let [first, last] = [rows[0].1, rows[rows.len() - 1].1];
+            let column = |row: &[f64]| row[0] - first[0];
+            let ends = |row: &[f64]| {
+                let outline = &beams(&recorder, row)[0];
+                [outline[0].0, outline[outline.len() / 2 - 1].0]
+            };
+            assert!(column(last) > 0.4, "the columns move by {} m", column(last));
+            let [left, right] = ends(last);
+            // Friction of 0.8 holds it on columns that start at less than 0.5 g.
+            assert!(
+                (left - column(last)).abs() < 1e-3 && (right - left - 1.0).abs() < 1e-9,
+                "{left} {right} {modes:?}"
+            );
+            assert_eq!(ends(first), [0.0, 1.0]);
+        }
+    }
 }

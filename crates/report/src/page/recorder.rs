@@ -13,7 +13,7 @@ use crate::sections::{BeamRecord, Column, Kind, columns_of};
 use crate::verdict::points_of_no_return;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::ops::{ControlFlow, Range};
+use std::ops::ControlFlow;
 use teeter_integrator::{
     Active, Closing, ClosingMonitor, Contact, ContactState, Model, Observer, ObserverError, PhaseKind, State,
     StepReport,
@@ -68,6 +68,9 @@ pub(super) const MOST_CURVES: usize = 21;
 
 /// Numbers of a block in [`Frames`]: x, y and φ.
 pub(crate) const BLOCK_FRAME: usize = 3;
+
+/// Numbers of a beam that moves as a whole at the end of a row of [`Frames`], before those of moving ground, x, y and slope: how far along x and y.
+pub(crate) const BEAM_MOVED: usize = 2;
 
 /// Most pictures of the animation.
 const FRAMES: usize = 2000;
@@ -171,7 +174,7 @@ impl PageRecorder {
         let scenery = Scenery::new(scene, layout);
         let frame = BLOCK_FRAME * scenery.blocks.len()
             + scenery.beams.iter().map(|beam| beam.points).sum::<usize>()
-            + moved(layout).map(|range| range.len()).sum::<usize>();
+            + scenery.moved_columns(layout);
         let beams = scene.beams.iter().zip(&layout.beams).enumerate();
         let sections = beams.flat_map(|(number, (of, place))| columns_of(number, of, place));
         let sections: Vec<Column> = sections.filter(|column| column.kind != Kind::Deflection).collect();
@@ -552,17 +555,14 @@ fn fill_frame(layout: &Layout, scenery: &Scenery, state: &State, row: &mut [f64]
         points.iter_mut().zip(&drawn.places).for_each(|(w, at)| *w = at.deflection(q));
         beams = rest;
     }
-    for range in moved(layout) {
-        let (out, rest) = beams.split_at_mut(range.len());
-        out.copy_from_slice(&state.q[range]);
-        beams = rest;
+    let moving = layout.beams.iter().zip(&scenery.beams).filter(|(place, drawn)| drawn.moves(place));
+    let (of_beams, of_ground) = beams.split_at_mut(BEAM_MOVED * moving.clone().count());
+    for (out, (place, drawn)) in of_beams.chunks_exact_mut(BEAM_MOVED).zip(moving) {
+        out.copy_from_slice(&drawn.moved(place, state));
     }
-}
-
-/// The coordinates by which supports and ground move, at the end of a row of [`Frames`]: of each beam on moving supports x
-/// and y, of moving ground x, y and slope.
-pub(crate) fn moved(layout: &Layout) -> impl Iterator<Item = Range<usize>> {
-    layout.beams.iter().filter_map(|beam| beam.supports.clone()).chain(layout.ground.clone())
+    if let Some(range) = &layout.ground {
+        of_ground.copy_from_slice(&state.q[range.clone()]);
+    }
 }
 
 /// A coordinate of a block in a row of [`Frames`], as in [`Curves`].

@@ -1,22 +1,23 @@
 //! What stands in the picture: sizes and places that don't change.
 
 use super::bands::BAND_COLUMNS;
-use super::recorder::{BLOCK_COLUMNS, ENERGIES, MOST_CURVES, MOTION_COLUMNS};
+use super::recorder::{BEAM_MOVED, BLOCK_COLUMNS, ENERGIES, MOST_CURVES, MOTION_COLUMNS};
 use super::{DIGITS, rounded};
 use crate::driven::Driven;
 use crate::own_weight;
 use crate::probe::Probe;
+use crate::verdict::is_carried;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use teeter_beam::{Axial, Hold, Support};
 use teeter_detect::OnSide;
-use teeter_integrator::BeamFace;
+use teeter_integrator::{BeamFace, State};
 use teeter_scenario::physical::{self, PhysicalTable};
 use teeter_scenario::scene::{
     self, BlockScene, Crowd, Display, ForceScene, LoadScene, Placement, RecordScene, Scene, SupportingBody,
 };
-use teeter_scenario::simulation::Layout;
+use teeter_scenario::simulation::{BeamPlace, Layout};
 use teeter_scenario::wording;
 
 /// A block as drawn.
@@ -56,8 +57,8 @@ pub(crate) struct BeamDrawn {
     pub(crate) masses: Vec<f64>,
     /// Of its supports at the ends and between, in their order, whether they have dashpots.
     pub(crate) dashpots: Vec<bool>,
-    /// Whether its right end is held along the axis.
-    pub(crate) held: bool,
+    /// Whether its left and its right end are held along the axis.
+    pub(crate) held: [bool; 2],
     /// Whether a support or a foundation carries it.
     #[serde(skip)]
     pub(crate) is_carried: bool,
@@ -70,6 +71,9 @@ pub(crate) struct BeamDrawn {
     pub(crate) places: Vec<Probe>,
     #[serde(skip)]
     pub(crate) middle: Probe,
+    /// Whether it moves along its axis as a whole, as where neither end is held along it. What it stretches by can't be seen.
+    #[serde(skip)]
+    pub(crate) drifts: bool,
     /// The probes whose deflection is recorded, but for one at midspan, and free ends: where, m, and how.
     #[serde(skip)]
     pub(crate) probes: Vec<(f64, Probe)>,
@@ -82,6 +86,19 @@ impl BeamDrawn {
     /// Whether no support and no foundation holds it: it lies on blocks or ground, or flies.
     pub(crate) fn is_free(&self) -> bool {
         !self.is_carried
+    }
+
+    /// Whether it moves as a whole: with its supports, or along its axis.
+    pub(crate) fn moves(&self, place: &BeamPlace) -> bool {
+        place.supports.is_some() || self.drifts
+    }
+
+    /// How far it has moved as a whole along x and y, m: as its supports have, and along its axis.
+    pub(crate) fn moved(&self, place: &BeamPlace, state: &State) -> [f64; 2] {
+        let [x, y] = place.supports.as_ref().map_or([0.0; 2], |range| [state.q[range.start], state.q[range.start + 1]]);
+        let along =
+            if self.drifts { place.axial_displacement_at(&state.q[place.range.clone()], 0.5 * self.span) } else { 0.0 };
+        [x + along, y]
     }
 
     /// A deflection (m) at this part of the span, from the line through the ends (whose deflections are `ends`) of a beam that nothing holds, as its
@@ -329,8 +346,13 @@ impl Scenery {
             let pieces = (elements * PIECES.div_ceil(elements)).min(MOST_PIECES);
             let at = |x: f64| Probe::new(place, place.beam.shape_clamped(x));
             let supports = drawn.spec.supports.map(wording::support);
-            let is_carried =
-                supports != [FREE; 2] || !drawn.spec.inner_supports.is_empty() || !drawn.spec.foundations.is_empty();
+            let is_carried = is_carried(&drawn.spec);
+            let held = match drawn.spec.axial {
+                Axial::Held => [true; 2],
+                Axial::Elastic { held, .. } => held,
+                // Its left end stays where it is.
+                _ => [true, false],
+            };
             BeamDrawn {
                 name: drawn.name.clone(),
                 x: drawn.position[0],
@@ -351,12 +373,13 @@ impl Scenery {
                     let inner = drawn.spec.inner_supports.iter().map(|inner| inner.support);
                     drawn.spec.supports.into_iter().chain(inner).map(has_dashpot).collect()
                 },
-                held: matches!(drawn.spec.axial, Axial::Held | Axial::Elastic { held: [_, true], .. }),
+                held,
                 is_carried,
                 is_without_weight: own_weight::is_left_out(scene, drawn),
                 points: pieces + 1,
                 places: (0..=pieces).map(|k| at(span * (k as f64 / pieces as f64))).collect(),
                 middle: at(0.5 * span),
+                drifts: held == [false; 2],
                 probes: {
                     let recorded = drawn.output.quantities.contains(&scene::BeamQuantity::Deflection);
                     let asked = place.probes.iter().copied().filter(|x| recorded && !is_middle(*x, span));
@@ -481,6 +504,12 @@ impl Scenery {
     /// The first column of a prescribed coordinate: its displacement, velocity and acceleration.
     pub(crate) fn driven_column(&self, number: usize) -> usize {
         self.energy_column() + ENERGIES.len() + MOTION_COLUMNS * number
+    }
+
+    /// Columns of what moves beams and ground as a whole, in a row of [`Frames`](super::frames::Frames).
+    pub(crate) fn moved_columns(&self, layout: &Layout) -> usize {
+        let beams = self.beams.iter().zip(&layout.beams).filter(|(drawn, place)| drawn.moves(place)).count();
+        BEAM_MOVED * beams + layout.ground.as_ref().map_or(0, ExactSizeIterator::len)
     }
 
     /// Whether contact forces are drawn as a network: of a single block it would be a star.

@@ -144,8 +144,9 @@ impl<'r> VtkRecorder<'r> {
                 place.supports.as_ref().map_or([0.0; 2], |range| [state.q[range.start], state.q[range.start + 1]]);
             let last = (drawn.places.len().max(2) - 1) as f64;
             let axis = drawn.places.iter().enumerate().map(|(k, at)| {
-                let x = drawn.x + drawn.span * k as f64 / last;
-                [x + carried[0], drawn.y + at.deflection(q) + carried[1]]
+                let x = drawn.span * k as f64 / last;
+                let along = place.axial_displacement_at(q, x);
+                [drawn.x + x + along + carried[0], drawn.y + at.deflection(q) + carried[1]]
             });
             let first = picture.points.len();
             picture.points.extend(axis);

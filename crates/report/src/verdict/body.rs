@@ -114,7 +114,7 @@ pub struct BodyVerdict {
     /// Of a block that began in flight, turned over and settled: by how much it has turned at the end, rad.
     #[serde(skip)]
     pub(crate) tumbled: Option<f64>,
-    /// Of a block that overturned: by how much it has turned at the end, rad, if that is more than to the next side.
+    /// Of a block that overturned or left its beam: by how much it has turned at the end, rad, if that is more than to the next side.
     #[serde(skip)]
     pub(crate) turned: Option<f64>,
     /// Of a block that rests: whether what carries it moves at the end.
@@ -126,7 +126,7 @@ pub struct BodyVerdict {
     /// Of one that trembles where it stands: when it last swung, s, if it rocked.
     #[serde(skip)]
     pub(crate) stopped_rocking: Option<f64>,
-    /// Of one that is shaken where it stands, or hops there: what it stands on, and in the end on other blocks, in words, if that moves at the end.
+    /// Of one that is shaken where it stands, or hops or bounces there: what it stands on, and in the end on other blocks, in words, if that moves at the end.
     #[serde(skip)]
     pub(crate) on_what_moves: Option<&'static str>,
     /// Since when it, and so what carries it, is at rest over what that stands on, s.

@@ -223,8 +223,7 @@ impl Carrier {
             On::Beam(beam, position) => {
                 let place = &layout.beams[*beam];
                 let [x, y] = beam_origin(*beam, *position, layout, &state.q);
-                let [vx, vy] =
-                    place.supports.clone().map_or([0.0; 2], |range| [state.v[range.start], state.v[range.start + 1]]);
+                let [vx, vy] = beam_moved(place, &state.v);
                 let Some([left, right]) = feet else {
                     let rate = place.deflection(&place.beam.shape_clamped(at[0] - x), &state.v[place.range.clone()]);
                     return [vx, vy + bent(place, at[0] - x, &state.v), rate.slope];
@@ -397,9 +396,16 @@ fn continued(scene: &Scene, block: usize, beam: usize) -> Vec<(usize, [f64; 2])>
     others.filter(|(other, _)| (height(*other) - height(beam)).abs() <= level).collect()
 }
 
-/// The left end of a beam's axis, which moves with its supports, m.
+/// How far a beam's left end is displaced, with its supports and along its axis, m; for velocities how fast.
+fn beam_moved(place: &BeamPlace, q: &[f64]) -> [f64; 2] {
+    let [x, y] = place.supports.clone().map_or([0.0; 2], |range| [q[range.start], q[range.start + 1]]);
+    [x + place.axial_displacement_at(&q[place.range.clone()], 0.0), y]
+}
+
+/// The left end of a beam's axis where it is now, m.
 pub(super) fn beam_origin(beam: usize, [x, y]: [f64; 2], layout: &Layout, q: &[f64]) -> [f64; 2] {
-    layout.beams[beam].supports.clone().map_or([x, y], |range| [x + q[range.start], y + q[range.start + 1]])
+    let [across, up] = beam_moved(&layout.beams[beam], q);
+    [x + across, y + up]
 }
 
 #[cfg(test)]

@@ -12,29 +12,44 @@ use teeter_scenario::scene::{BlockScene, Scene};
 /// Blocks up to this many are told one by one.
 const FEW: usize = 2;
 
+/// What is known of the beams of a scene.
+pub(crate) struct OfBeams<'a> {
+    /// What they bore.
+    pub(crate) borne: &'a [BorneSummary],
+    /// How far they deflected, of a scene without blocks.
+    pub(crate) deflections: &'a [LargestDeflection],
+    /// Which fell, and by how much, m.
+    pub(crate) fallen: &'a [(&'a str, f64)],
+    /// Whether there were impacts, which decide stresses then.
+    pub(crate) has_impacts: bool,
+}
+
 /// What became of the scene; `moved` says how far a block is from its start.
 pub(crate) fn headline(
     scene: &Scene,
     state: &State,
     verdict: &[BodyVerdict],
-    (beams, deflections): (&[BorneSummary], &[LargestDeflection]),
+    beams: &OfBeams<'_>,
     moved: impl Fn(usize) -> [f64; 3],
 ) -> String {
     let mut text = match verdict {
-        [] => without_free_blocks(scene, state, deflections, moved),
+        [] => without_free_blocks(scene, state, beams, moved),
         few if few.len() <= FEW => {
             few.iter().map(|of| format!("`{}` {}", of.body, one(scene, of, state.t))).collect::<Vec<_>>().join("; ")
         }
         many => many::all(scene, many, state.t),
     };
-    let judged = beams.iter().filter_map(|beam| Some((beam.decisive_part()?, beam)));
+    if !verdict.is_empty() {
+        fell(beams.fallen).for_each(|beam| text.push_str(&format!("; {beam}")));
+    }
+    let judged = beams.borne.iter().filter_map(|beam| Some((beam.decisive_part()?, beam)));
     if let Some((_, beam)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) {
         let part = beam.part_of_yield_strength.unwrap_or_default();
-        let told = |part: f64| percent(part, !verdict.is_empty());
+        let told = |part: f64| percent(part, beams.has_impacts);
         let (part, weight) = (told(part), beam.about_weight(told));
         text.push_str(&format!("; `{}` was stressed to {part} of its yield strength{weight}", beam.beam));
     } else if verdict.is_empty() {
-        let known = beams.iter().filter_map(|beam| Some((beam.largest_stress?, beam)));
+        let known = beams.borne.iter().filter_map(|beam| Some((beam.largest_stress?, beam)));
         if let Some((largest, beam)) = known.max_by(|a, b| a.0.stress.total_cmp(&b.0.stress)) {
             let (stress, x) = (with_unit(largest.stress, "Pa"), with_unit(largest.x, "m"));
             text.push_str(&format!(
@@ -48,10 +63,9 @@ pub(crate) fn headline(
     text
 }
 
-/// A part of the yield strength in percent, never one that hides on which side of it the stress is. With blocks it is the stress of impacts, which
-/// depends on step and elements: `about`.
-pub(crate) fn percent(part: f64, with_blocks: bool) -> String {
-    let (digits, cap, about) = if with_blocks { (2, 99.0, "about ") } else { (3, 99.9, "") };
+/// A part of the yield strength in percent, never one that hides on which side of it the stress is. With impacts it depends on step and elements: `about`.
+pub(crate) fn percent(part: f64, has_impacts: bool) -> String {
+    let (digits, cap, about) = if has_impacts { (2, 99.0, "about ") } else { (3, 99.9, "") };
     if part < 1.0 {
         return format!("{about}{} %", shortest((100.0 * part).min(cap), digits));
     }
@@ -62,12 +76,8 @@ pub(crate) fn percent(part: f64, with_blocks: bool) -> String {
 }
 
 /// What became of a scene without free blocks: where blocks that are free in part ended, and how far beams deflected, in the order given.
-fn without_free_blocks(
-    scene: &Scene,
-    state: &State,
-    deflections: &[LargestDeflection],
-    moved: impl Fn(usize) -> [f64; 3],
-) -> String {
+fn without_free_blocks(scene: &Scene, state: &State, beams: &OfBeams<'_>, moved: impl Fn(usize) -> [f64; 3]) -> String {
+    let OfBeams { deflections, fallen, .. } = *beams;
     let in_part = |(_, block): &(usize, &BlockScene)| block.motion.is_given() && !block.motion.is_whole();
     let ends = |(number, block)| ended(block, moved(number));
     let mut told: Vec<String> = scene.blocks.iter().enumerate().filter(in_part).map(ends).collect();
@@ -75,7 +85,10 @@ fn without_free_blocks(
     if of_blocks > FEW {
         told.splice(FEW.., [format!("{} more blocks are free in part", of_blocks - FEW)]);
     }
-    let bent: Vec<_> = deflections.iter().filter(|of| of.w != 0.0).collect();
+    told.extend(fell(fallen));
+    // How far something fell is no deflection.
+    let is_bent = |of: &&LargestDeflection| of.w != 0.0 && fallen.iter().all(|(beam, _)| *beam != of.beam);
+    let bent: Vec<_> = deflections.iter().filter(is_bent).collect();
     told.extend(bent.iter().take(FEW).map(|of| {
         let way = if of.w < 0.0 { "down" } else { "up" };
         let (w, x) = (with_unit(of.w.abs(), "m"), with_unit(of.x, "m"));
@@ -95,8 +108,16 @@ fn without_free_blocks(
         };
         return format!("{what} up to {}", time(state.t));
     }
-    let none = if of_blocks > 0 { "no block is free; " } else { "" };
+    let none = if !scene.blocks.is_empty() { "no block is free; " } else { "" };
     format!("{none}{}", told.join("; "))
+}
+
+/// Which beams fell, in words.
+fn fell(fallen: &[(&str, f64)]) -> impl Iterator<Item = String> {
+    let more = fallen.len().saturating_sub(FEW);
+    let others = (more > 0).then(|| format!("{more} more beams fell"));
+    let told = fallen.iter().take(FEW);
+    told.map(|(beam, fall)| format!("`{beam}` fell, {} lower at the end", with_unit(*fall, "m"))).chain(others)
 }
 
 /// Where a block of which a part of the motion is prescribed ended by the rest of it, from its start (m, m, rad).
@@ -194,6 +215,7 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         .fell_off
         .as_ref()
         .map_or_else(String::new, |(way, beam)| format!(", then fell off the {} end of `{beam}`", way.word()));
+    let on = of.on_what_moves.map_or_else(String::new, |what| format!(", on {what} that moves"));
     let fate = match of.what {
         Fate::Overturned if of.t == Some(of.start) => {
             format!("began past its critical angle and overturned to the {way}{off}{turned}{then_rested}")
@@ -210,7 +232,7 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             if of.touches_beam {
                 return format!("tipped over the {way} end of {beam}{at} and still touches it");
             }
-            beside(format!("left {beam} at its {way} end{at}{then_rested}"))
+            beside(format!("left {beam} at its {way} end{at}{turned}{then_rested}"))
         }
         Fate::Sunk => format!("fell below everything that could hold it{at}"),
         Fate::Fell => format!("fell from its place{at}{then_rested}"),
@@ -275,10 +297,10 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         Fate::Moves => match of.going {
             // What bounces doesn't slide, but may be elsewhere.
             Some(Going::Bounces) if of.flown.is_some() => {
-                beside(format!("is {}, {}", Going::Bounces.word(), place(scene, of, of.flown.unwrap_or_default())))
+                let place = place(scene, of, of.flown.unwrap_or_default());
+                beside(format!("is {}{on}, {place}", Going::Bounces.word()))
             }
             Some(going) => {
-                let on = of.on_what_moves.map_or_else(String::new, |what| format!(", on {what} that moves"));
                 let so_far = of.rolled.filter(|_| going == Going::Rolls);
                 let so_far =
                     so_far.map_or_else(String::new, |ways| format!("{} so far", self::rolled(scene, of, ways)));
@@ -463,7 +485,7 @@ mod tests {
         assert_eq!([0.1234, 0.997, 0.9999].map(|part| percent(part, false)), ["12.3 %", "99.7 %", "99.9 %"]);
         let over = [1.0, 1.0004, 1.0481, 2.5].map(|part| percent(part, false));
         assert_eq!(over, ["100 %", "just over 100 %", "105 %", "250 %"]);
-        // With blocks it is that of impacts.
+        // With impacts it is about that.
         let of_impacts = [0.1234, 0.9999, 1.0, 1.0004, 1.0481].map(|part| percent(part, true));
         assert_eq!(of_impacts, ["about 12 %", "about 99 %", "about 100 %", "just over 100 %", "about 105 %"]);
     }

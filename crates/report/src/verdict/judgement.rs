@@ -97,8 +97,10 @@ impl Seen {
         let turned = self.angle - self.start[2];
         // Where pieces of a profile meet, a base goes a little less far than its feet. What comes down turns over as it does.
         let apart = if watched.carrier.is_terrain() || began_in_flight { watched.base() } else { least };
+        // Which turn it made before and which after isn't told.
+        let turns_as_it_falls = matches!(what, Fate::Overturned | Fate::Left);
         let is_free = matches!(block.placement, Placement::Free { .. });
-        let may_tumble = is_free && !watched.is_round && what != Fate::Overturned;
+        let may_tumble = is_free && !watched.is_round && !turns_as_it_falls;
         let tumbled = self.began.filter(|_| may_tumble).map(|_| turned);
         let tilt = watched.against_carrier(layout, number, &state.q);
         let turns_on = |monitor: &&RockingMonitor| {
@@ -141,6 +143,12 @@ impl Seen {
         // What rests on its beam from the start may have moved with it; where supports move it is told to stand on these.
         let moved = rests != Some(start) || (self.unmoved != Some(start) && watched.driven_until == 0.0);
         let is_here = matches!(what, Fate::Rests | Fate::Moves) && moved && !began_in_flight;
+        // What rests on a beam that goes along its axis goes with it.
+        let goes_along = |beam: usize| {
+            let place = &layout.beams[beam];
+            place.axial_displacement_at(&state.q[place.range.clone()], 0.0).abs() >= least
+        };
+        let taken_along = rests == Some(start) && watched.carrier.beam().is_some_and(goes_along);
         let beam = |when: bool| watched.carrier.beam().filter(|_| when).map(|beam| layout.beams[beam].name.clone());
         BodyVerdict {
             start,
@@ -177,7 +185,7 @@ impl Seen {
             against: watched.against(layout, number, &state.q),
             still_from: self.still.filter(|_| rests.is_none() && !stopped),
             stands_from: since,
-            turned: (what == Fate::Overturned && turned.abs() >= TUMBLED).then_some(turned.abs()),
+            turned: (turns_as_it_falls && !watched.is_round && turned.abs() >= TUMBLED).then_some(turned.abs()),
             is_carried: rests.is_some() && {
                 let [vx, vy, spin] = watched.carrier.base_velocity([q[0], q[1]], layout, state);
                 // A record may end with the run.
@@ -189,7 +197,9 @@ impl Seen {
             on_what_moves: watched.carrier.word().filter(|_| {
                 // What rides on a driven block is told to stand on it.
                 let is_told = going == Some(Going::Rides) && watched.carrier.is_by_block();
-                (stopped || going.is_some_and(Going::stays)) && !is_told && carrier_moves()
+                (stopped || going.is_some_and(|going| going.stays() || going == Going::Bounces))
+                    && !is_told
+                    && carrier_moves()
             }),
             going,
             stopped_rocking: self
@@ -198,7 +208,7 @@ impl Seen {
                 .filter(|_| going == Some(Going::Trembles) && has_stood && part.is_some_and(|part| part >= ROCKED)),
             tips,
             unmoved_from: self.unmoved.filter(|since| rests.is_some() && state.t - since >= watched.still_time),
-            stood_on: beam(is_here && self.never_moved(watched, least)),
+            stood_on: beam(taken_along || (is_here && self.never_moved(watched, least))),
             left_beam: beam(what == Fate::Left),
             fell_off: (what == Fate::Overturned)
                 .then(|| watched.carrier.below_an_end([q[0], q[1]], watched.reach, layout, &state.q))

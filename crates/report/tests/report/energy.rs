@@ -1,5 +1,6 @@
 //! Energy that contacts make is warned of, and what the warning says to take makes none.
 
+use crate::page::run;
 use std::fs;
 use std::path::Path;
 use teeter_report::{ENERGY_MADE, ENERGY_TAKEN, EndedWord, Record, Summary};
@@ -106,4 +107,21 @@ fn energy_that_a_scheme_takes_is_warned_of() {
     let filter = taken(&dropped, &["time.scheme=resolved"]).unwrap();
     assert!(filter.contains("oscillations of beams"), "{filter}");
     assert_eq!(taken(&dropped, &["time.scheme=moreau-jean-located"]), None);
+}
+
+#[test]
+fn a_work_that_is_nothing_beside_the_energies_is_told_and_not_drawn() {
+    let text = |friction: &str| {
+        format!(
+            "[time]\nend = '0.2 s'\nstep = '500 us'\n[ground]\n[block.slides]\ndensity = '1000 kg/m^3'\nwidth = '10 cm'\nheight = '5 cm'\n\
+             depth = '10 cm'\non = 'ground'\nat = '0 m'\nvelocity = ['1 m/s', '0 m/s']\n[contact.floor]\nbetween = ['slides', 'ground']\n\
+             friction = {friction}\n"
+        )
+    };
+    let told = "Too small beside the energies for a plot: the work “friction” (at most";
+    // It takes 2 µ g s/v² of the kinetic energy: 4 µ.
+    let little = run("little-friction", &text("1e-6")).html;
+    assert!(little.contains(told) && !little.contains("\"id\":\"works\""));
+    let more = run("more-friction", &text("1e-3")).html;
+    assert!(!more.contains(told) && more.contains("\"id\":\"works\""));
 }

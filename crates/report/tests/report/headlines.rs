@@ -13,7 +13,7 @@ const BOUNCING: &str = "[time]\nend = '3 s'\nstep = '500 us'\n[ground]\nmotion =
 fn what_bounces_neither_rocks_nor_slides() {
     let bouncing = run("bouncing", BOUNCING);
     let headline = &bouncing.summary.headline;
-    assert!(headline.starts_with("`cube` is still bouncing"), "{headline}");
+    assert!(headline.starts_with("`cube` is still bouncing, on ground that moves"), "{headline}");
     assert!(!headline.contains("rocks") && !headline.contains("slid"), "{headline}");
     assert!(!bouncing.summary.crossings.is_empty() && half_cycles(&bouncing.page, &bouncing.summary).is_empty());
     assert!(!bouncing.html.contains("id=\"rocking\""));

@@ -3,6 +3,7 @@
 
 #[cfg(feature = "animation")]
 mod animation;
+mod beams;
 mod energy;
 mod extremes;
 mod headlines;

@@ -349,10 +349,10 @@ fn what_moves_is_drawn_where_it_is() {
     let run = run("moving", scene);
     let page = data(&run.html);
     let last = |value: &Value| *numbers(value).last().unwrap();
-    assert!(page["frames"]["beams"][0].get("supports").is_none());
-    let supports = &page["frames"]["beams"][1]["supports"];
+    assert!(page["frames"]["beams"][0].get("moved").is_none());
+    let moved = &page["frames"]["beams"][1]["moved"];
     // The velocity of the ramp jumps twice: half a step of it is lost.
-    assert!((last(&supports[0]) - 0.3).abs() < 2e-3 && (last(&supports[1]) - 0.2).abs() < 2e-3, "{supports}");
+    assert!((last(&moved[0]) - 0.3).abs() < 2e-3 && (last(&moved[1]) - 0.2).abs() < 2e-3, "{moved}");
     let ground = &page["frames"]["ground"];
     assert!((last(&ground["x"]) - 0.2).abs() < 1e-6 && last(&ground["y"]) == 0.0);
     assert!((last(&ground["slope"]) - 5_f64.to_radians() - 0.1).abs() < 1e-6);

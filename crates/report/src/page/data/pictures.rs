@@ -3,13 +3,13 @@
 use super::column::{Column, SEEN};
 use super::time;
 use crate::page::packed::Packed;
-use crate::page::recorder::{BLOCK_FRAME, PageRecorder};
+use crate::page::recorder::{BEAM_MOVED, BLOCK_FRAME, PageRecorder};
 use crate::page::{DIGITS, rounded};
 use serde::Serialize;
 use teeter_scenario::scene::{History, LoadKind};
 
-/// The pictures: `blocks[k].x[i]` at `t[i]`, of many blocks packed; `beams[k].w` packed, picture by picture in units of `beams[k].unit`. Displacements of supports
-/// and ground where they move.
+/// The pictures: `blocks[k].x[i]` at `t[i]`, of many blocks packed; `beams[k].w` packed, picture by picture in units of `beams[k].unit`. How far beams have moved as a
+/// whole, and the ground, where they do.
 #[derive(Serialize)]
 pub(super) struct FrameData {
     t: Vec<f64>,
@@ -67,7 +67,7 @@ struct BeamFrames {
     /// Second differences along the span, which are small, as those before its left end were 0.
     w: String,
     #[serde(skip_serializing_if = "Option::is_none")]
-    supports: Option<[Column; 2]>,
+    moved: Option<[Column; 2]>,
 }
 
 /// A deflection is sent in this part of the span: finer than a picture shows, with few digits.
@@ -95,12 +95,11 @@ pub(super) fn frames(recorder: &PageRecorder) -> FrameData {
                 before = [before[1], now];
             }
         }
-        let supports = place.supports.as_ref().map(|range| {
-            let first = moved;
-            moved += range.len();
-            [column(first), column(first + 1)]
+        let own = beam.moves(place).then(|| {
+            moved += BEAM_MOVED;
+            [column(moved - 2), column(moved - 1)]
         });
-        BeamFrames { unit, w: packed.text(), supports }
+        BeamFrames { unit, w: packed.text(), moved: own }
     });
     let beams: Vec<BeamFrames> = beams.collect();
     let ground = recorder.layout.ground.as_ref().map(|_| GroundFrames {

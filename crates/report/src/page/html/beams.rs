@@ -32,7 +32,7 @@ const UNBOUNDED: &str = "<p class=\"note\">With impacts both depend on the step 
 /// A part of the yield strength in percent, marked where it is beyond that.
 fn judged(part: f64, summary: &Summary) -> String {
     let class = if part > 1.0 { " class=\"bad\"" } else { "" };
-    format!("<span{class}>{}</span>", percent(part, !summary.verdict.is_empty()))
+    format!("<span{class}>{}</span>", percent(part, summary.impact_count > 0))
 }
 
 /// That forces are without the own weight of the beams whose scene leaves it out, where `shown` says that the beam has some.

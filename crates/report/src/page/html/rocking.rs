@@ -85,16 +85,21 @@ pub(super) fn rocking(
     head.push_str(if several { "<th scope=\"col\">Block</th>" } else { "" });
     head.push_str("<th scope=\"col\">φ = 0 at<br><small>s</small></th>");
     head.push_str(if hits {
-        "<th scope=\"col\">ω⁻<br><small>rad/s</small></th><th scope=\"col\">ω⁺<br><small>rad/s</small></th>"
+        "<th scope=\"col\" class=\"wide\">ω⁻<br><small>rad/s</small></th><th scope=\"col\" class=\"wide\">ω⁺<br><small>rad/s</small></th>"
     } else {
         ""
     });
-    head.push_str(if ratios { "<th scope=\"col\">ω⁺/ω⁻</th>" } else { "" });
-    head.push_str(if ideal { "<th scope=\"col\">Housner</th>" } else { "" });
+    // Narrow windows have room for those that tell the decay.
+    let (any, wide) = ("", " class=\"wide\"");
+    let of_ratios = if decays && lifts { wide } else { any };
+    if ratios {
+        let _ = write!(head, "<th scope=\"col\"{of_ratios}>ω⁺/ω⁻</th>");
+    }
+    head.push_str(if ideal { "<th scope=\"col\" class=\"wide\">Housner</th>" } else { "" });
     let _ = write!(head, "<th scope=\"col\">Next peak<br><small>{angle_unit}</small></th>");
     head.push_str(if decays { "<th scope=\"col\">Next peak / previous</th>" } else { "" });
     head.push_str(if lifts { "<th scope=\"col\">Next lift / previous</th>" } else { "" });
-    head.push_str(if squares { "<th scope=\"col\">Housner²</th>" } else { "" });
+    head.push_str(if squares { "<th scope=\"col\" class=\"wide\">Housner²</th>" } else { "" });
     head.push_str("</tr></thead>\n<tbody>\n");
     let fixed = |x: Option<f64>, digits: usize| {
         // No negative zero.
@@ -118,24 +123,37 @@ pub(super) fn rocking(
         let row_head = if several { format!("<th scope=\"row\">{name}</th>") } else { String::new() };
         let rates = [0, 1].map(|k| fixed(cycle.omega.map(|omega| omega[k]), of_rates));
         let cells = [
-            (true, fixed(Some(cycle.t), of_times)),
-            (hits, rates[0].clone()),
-            (hits, rates[1].clone()),
-            (ratios, fixed(ratio(cycle), 4)),
-            (ideal, fixed(housner(cycle), 4)),
-            (true, fixed(cycle.peak_after.map(|peak| peak * per_radian), of_peaks)),
-            (decays, fixed(decay(cycle), 4)),
-            (lifts, fixed(cycle.lift, 4)),
-            (squares, fixed(square(cycle), 4)),
+            (true, any, fixed(Some(cycle.t), of_times)),
+            (hits, wide, rates[0].clone()),
+            (hits, wide, rates[1].clone()),
+            (ratios, of_ratios, fixed(ratio(cycle), 4)),
+            (ideal, wide, fixed(housner(cycle), 4)),
+            (true, any, fixed(cycle.peak_after.map(|peak| peak * per_radian), of_peaks)),
+            (decays, any, fixed(decay(cycle), 4)),
+            (lifts, any, fixed(cycle.lift, 4)),
+            (squares, wide, fixed(square(cycle), 4)),
         ];
-        let cells: String =
-            cells.iter().filter(|(shown, _)| *shown).map(|(_, cell)| format!("<td>{cell}</td>")).collect();
+        let cells: String = cells
+            .iter()
+            .filter(|(shown, ..)| *shown)
+            .map(|(_, class, cell)| format!("<td{class}>{cell}</td>"))
+            .collect();
         let _ = writeln!(html, "<tr data-body=\"{name}\" data-t=\"{}\">{row_head}{cells}</tr>", cycle.t);
     }
     html.push_str("</tbody></table></div>\n");
     html.push_str(if cycles.len() > UNFOLDED { "</details>\n" } else { "" });
     if cycles.len() > ROWS {
         let _ = writeln!(html, "<p>… and {} more; all are in summary.json.</p>", cycles.len() - ROWS);
+    }
+    if hits || ideal || squares {
+        let left_out =
+            [(hits, "ω⁻ and ω⁺"), (ratios && of_ratios == wide, "ω⁺/ω⁻"), (ideal, "Housner"), (squares, "Housner²")];
+        let left_out: Vec<&str> = left_out.into_iter().filter(|(shown, _)| *shown).map(|(_, what)| what).collect();
+        let _ = writeln!(
+            html,
+            "<p class=\"note narrow\">In a wider window the table has {}, too.</p>",
+            left_out.join(", ")
+        );
     }
     html.push_str("<p class=\"note\">");
     html.push_str(if hits {

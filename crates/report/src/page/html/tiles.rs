@@ -86,7 +86,7 @@ fn as_told(x: f64, unit: &str) -> String {
 }
 
 /// The tiles of the block that slid farthest, of those that didn't overturn or fall, whatever else they do: how far, and how fast it slides on.
-fn sliding(summary: &Summary) -> Vec<(String, String, String)> {
+fn sliding<'s>(summary: &Summary, slid_on: impl Fn(&str) -> Vec<&'s str>) -> Vec<(String, String, String)> {
     let slid = summary.verdict.iter().enumerate().filter(|(_, of)| of.has_slid);
     let far =
         |of: &BodyVerdict| [of.slid, of.farthest].into_iter().flatten().fold(0.0, |far: f64, way| far.max(way.abs()));
@@ -100,8 +100,11 @@ fn sliding(summary: &Summary) -> Vec<(String, String, String)> {
     let slid = slid.filter(|_| of.to_and_fro.is_none() || farthest.is_none());
     let in_all = of.slid_in_all.filter(|_| of.to_and_fro.is_some());
     let whose = if summary.verdict.len() > 1 { format!(" ({})", of.body) } else { String::new() };
+    // The sum over all that it slid on.
+    let on = slid_on(&of.body);
+    let on = if on.len() > 1 { format!(", on {}", on.join(" and ")) } else { String::new() };
     let tiles = [
-        tile("slid", format!("Slid by{whose}"), slid, "m"),
+        tile("slid", format!("Slid by{on}{whose}"), slid, "m"),
         tile("farthest", format!("Slid at most{whose}"), farthest, "m"),
         tile("slid_in_all", format!("Slid in all{whose}"), in_all, "m"),
         tile("speed", format!("Speed at the end{whose}"), of.speed, "m/s"),
@@ -151,10 +154,10 @@ impl Largest {
     }
 }
 
-pub(super) fn tiles(values: &Numbers, summary: &Summary) -> String {
+pub(super) fn tiles<'s>(values: &Numbers, summary: &Summary, slid_on: impl Fn(&str) -> Vec<&'s str>) -> String {
     let mut html = String::new();
     let seconds = |t: Option<f64>| t.map(|t| with_all_digits(t, "s", 4).replace('-', "\u{2212}"));
-    for (path, label, shown) in sliding(summary) {
+    for (path, label, shown) in sliding(summary, slid_on) {
         let _ = writeln!(
             html,
             "<div class=\"tile\"><dt>{}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{}</dd></div>",

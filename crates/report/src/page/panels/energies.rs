@@ -22,7 +22,8 @@ impl Panels {
         let energies =
             energies.into_iter().filter(|(name, _)| *name != "elastic" || !recorder.scenery.beams.is_empty());
         let energies: Vec<_> = energies.map(|(name, number)| (name, number, of(&self.curves, name))).collect();
-        let scale = largest(energies.iter().flat_map(|(.., (_, values))| values)).max(recorder.scenery.weight_energy);
+        let greatest = largest(energies.iter().flat_map(|(.., (_, values))| values));
+        let scale = greatest.max(recorder.scenery.weight_energy);
         let works = ["contact", "friction", "viscous", "numerical", "external", "projection"];
         let works: Vec<_> = works.into_iter().enumerate().map(|(k, name)| (name, k, of(&self.curves, name))).collect();
         for (id, title, all) in [("energy", "Energy", energies), ("works", "Work since t = 0", works)] {
@@ -38,7 +39,16 @@ impl Panels {
             }
             // What is small beside another would be a line at zero. Energies turn into each other, and belong together as long as they are seen.
             let groups = by_size(drawn, if id == "works" { SMALL } else { SMALL_ENERGY });
-            for (number, drawn) in groups.into_iter().filter(|group| !group.is_empty()).enumerate() {
+            // What nobody would miss is told instead.
+            let is_seen =
+                |group: &Vec<Drawn>| largest(group.iter().flat_map(|(.., values)| values)) >= NEGLIGIBLE * greatest;
+            let (seen, negligible): (Vec<_>, Vec<_>) =
+                groups.into_iter().filter(|group| !group.is_empty()).partition(is_seen);
+            let kind = if id == "works" { "work" } else { "energy" };
+            let told = negligible.into_iter().flatten();
+            let told = told.map(|(_, name, _, values)| (format!("the {kind} “{name}”"), largest(&values)));
+            self.negligible.extend(told);
+            for (number, drawn) in seen.into_iter().enumerate() {
                 let id = if number > 0 { format!("{id}-{}", number + 1) } else { id.to_owned() };
                 let title = if number > 0 { format!("{title}, smaller parts") } else { title.to_owned() };
                 self.panels.push(self.energy_panel(id, title, drawn, scale));
@@ -76,6 +86,9 @@ const SMALL: f64 = 0.03;
 
 /// And an energy smaller than this part.
 const SMALL_ENERGY: f64 = 0.005;
+
+/// Energies and works smaller than this part of the largest energy have none.
+const NEGLIGIBLE: f64 = 1e-4;
 
 /// In groups, largest first, in each of which the smallest is at least the part `small` of the largest.
 fn by_size(mut left: Vec<Drawn>, small: f64) -> Vec<Vec<Drawn>> {
