@@ -109,6 +109,12 @@ impl BeamPlace {
         Some(self.deflection(&self.beam.shape_at(x)?, q))
     }
 
+    /// How far its supports have moved along x and y, for the coordinates `q` of the model (their rates for velocities), m; 0 where they don't move.
+    #[must_use]
+    pub fn support_displacement(&self, q: &[f64]) -> [f64; 2] {
+        self.supports.as_ref().map_or([0.0; 2], |range| [q[range.start], q[range.start + 1]])
+    }
+
     /// The displacement along its axis of the section at x (m, along the beam) for its own coordinates `q` (its rate for velocities), m; 0 of a beam
     /// without axial dofs. Doesn't allocate.
     #[must_use]

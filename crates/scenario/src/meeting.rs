@@ -192,7 +192,7 @@ impl Shapes {
             }
         }
         for (number, ((shape, place), joined)) in beams.iter().zip(&layout.beams).zip(on_beam.iter()).enumerate() {
-            let moved = place.supports.as_ref().map_or([0.0; 2], |range| [q[range.start], q[range.start + 1]]);
+            let moved = place.support_displacement(q);
             let (left, bottom) = (shape.left[0] + moved[0], shape.left[1] + moved[1]);
             let depth_at = |block: &PlacedOutline, along: f64| {
                 let w = place.deflection_at(&q[place.range.clone()], along).map_or(f64::NAN, |at| at.w);

@@ -89,6 +89,7 @@ fn page(depth: Depth, found: &[(Family, Vec<Finding>)], maps: &[Map]) -> Result<
             write!(page, "\n![{}](figures/{})\n", figure.title, figure.file)?;
         }
     }
+    page.push_str(HEAVY);
     for (family, findings) in found {
         write!(page, "\n## {}\n\n{}\n\n{TABLE}", family.name, family.about)?;
         for Finding { row, measured: m, .. } in findings {
@@ -162,7 +163,10 @@ all schemes. Measured over all steps:
   differs from the solver's. **unconverged**: steps reported as unsolved.
 - **iterations**: the most in a step, over all its solves. Nothing is timed: an endless run shows as work.
 - **warnings**: the number of warnings of `teeter check`.
+";
 
+/// What was measured by hand, beside the families.
+const HEAVY: &str = "
 ## Heavy loads on light blocks
 
 What presses on a light block from both sides is millions of times its weight, and rounding and the solver leave some 1e-16 to 1e-13 of it: at a

@@ -95,7 +95,7 @@ impl BeamDrawn {
 
     /// How far it has moved as a whole along x and y, m: as its supports have, and along its axis.
     pub(crate) fn moved(&self, place: &BeamPlace, state: &State) -> [f64; 2] {
-        let [x, y] = place.supports.as_ref().map_or([0.0; 2], |range| [state.q[range.start], state.q[range.start + 1]]);
+        let [x, y] = place.support_displacement(&state.q);
         let along =
             if self.drifts { place.axial_displacement_at(&state.q[place.range.clone()], 0.5 * self.span) } else { 0.0 };
         [x + along, y]

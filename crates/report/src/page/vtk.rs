@@ -140,8 +140,7 @@ impl<'r> VtkRecorder<'r> {
         for (number, (place, drawn)) in self.layout.beams.iter().zip(&self.scenery.beams).enumerate() {
             let q = &state.q[place.range.clone()];
             // Supports that move carry the beam with them.
-            let carried =
-                place.supports.as_ref().map_or([0.0; 2], |range| [state.q[range.start], state.q[range.start + 1]]);
+            let carried = place.support_displacement(&state.q);
             let last = (drawn.places.len().max(2) - 1) as f64;
             let axis = drawn.places.iter().enumerate().map(|(k, at)| {
                 let x = drawn.span * k as f64 / last;

@@ -398,7 +398,7 @@ fn continued(scene: &Scene, block: usize, beam: usize) -> Vec<(usize, [f64; 2])>
 
 /// How far a beam's left end is displaced, with its supports and along its axis, m; for velocities how fast.
 fn beam_moved(place: &BeamPlace, q: &[f64]) -> [f64; 2] {
-    let [x, y] = place.supports.clone().map_or([0.0; 2], |range| [q[range.start], q[range.start + 1]]);
+    let [x, y] = place.support_displacement(q);
     [x + place.axial_displacement_at(&q[place.range.clone()], 0.0), y]
 }
 

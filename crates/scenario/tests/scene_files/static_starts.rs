@@ -43,7 +43,7 @@ fn what_overhangs_an_end_starts_at_rest() {
     }
 }
 
-/// A beam without supports on two columns that move as prescribed; `ground` and `contacts` if these stand on it.
+/// A beam without supports on two columns that move as prescribed, by the line `motion`.
 fn on_columns(motion: &str) -> String {
     format!(
         "{MATERIALS}[signal.s]\nshape = 'harmonic'\nfrequency = '2 Hz'\n\

@@ -197,7 +197,7 @@ impl Shown {
         let error = match *error {
             error if !error.is_finite() => "–".to_owned(),
             error if error > width => "more than the range".to_owned(),
-            // As where other values fit as well: the neighbourhood of one says nothing of what is known.
+            // Far smaller than the interval, as where distant values fit as well: its digits would all be zeros.
             error if number(error).parse() == Ok(0.0) => "–".to_owned(),
             error => format!("{}{unit}", number(error)),
         };

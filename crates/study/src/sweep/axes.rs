@@ -189,13 +189,11 @@ fn values(reader: &mut Reader<'_>, path: &str, node: &Node<'_, '_>, files: &List
     Some((0..count).map(|k| from.text_of(value(k))).collect())
 }
 
-/// Significant digits of what people write.
-const DIGITS: usize = 15;
-
-/// A value with what the rounding of a sum has added to its last digits taken away: 1.1400000000000001 is 1.14.
+/// The value with its last digits rounded off, if that makes it much shorter: 1.1400000000000001 becomes 1.14.
 fn without_rounding(value: f64) -> f64 {
     let length = |value: f64| format!("{value:?}").len();
-    let short = format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value);
+    let digits = f64::DIGITS as usize;
+    let short = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
     // Of thirds, 15 digits are hardly shorter than 16.
     if length(short) + 2 < length(value) { short } else { value }
 }
