@@ -72,7 +72,8 @@ pub struct Candidate<const D: usize> {
     pub id: ContactId,
     /// The law of the contact.
     pub law: LawId,
-    /// The point, and the foot on the surface.
+    /// Where it acts on either body: the point, and its foot on the surface; or one place for both, so that friction and its reaction have
+    /// no couple of their own across the gap, as between two shapes that are free to turn.
     pub sides: [Anchor<D>; 2],
     /// Normal and tangents, rows.
     pub frame: Frame<D>,

@@ -82,6 +82,29 @@ fn shapes_of_all_kinds_keep_the_contract() {
     }
 }
 
+/// Else friction and its reaction had a couple of their own.
+#[test]
+fn shapes_act_on_each_other_in_one_place() {
+    let wedge = polygon(&[[-1.0, -0.4], [1.1, -0.5], [0.2, 0.9]]);
+    let shapes = [rectangle(2.0, 1.0), wedge, disc(0.7), rounded(2.0, 1.0, 0.1)];
+    let mut looked = 0;
+    for (a, b) in shapes.iter().flat_map(|a| shapes.iter().map(move |b| (a, b))) {
+        // Apart, and in each other.
+        for pose in [[[0.0, 0.0, 0.3], [1.7, 1.4, 2.5]], [[0.0, 0.0, 0.1], [0.1, 1.1, -0.2]]] {
+            for contact in found(&pair([a.clone(), b.clone()]), &pose, 10.0) {
+                let [one, other] = contact.sides.map(|side| {
+                    let mut place = [Vector2::zeros()];
+                    Poses(pose.to_vec()).place(side.body, &[side.point], &mut place);
+                    place[0]
+                });
+                assert!((one - other).norm() < 1e-14, "{contact:?}");
+                looked += usize::from(contact.gap.abs() > 0.01);
+            }
+        }
+    }
+    assert!(looked > 20, "{looked}");
+}
+
 #[test]
 fn a_block_on_a_wider_one_stands_on_its_own_corners_and_the_other_way_round() {
     let narrow_on_wide = pair([rectangle(1.0, 1.0), rectangle(4.0, 1.0)]);

@@ -104,8 +104,8 @@ pub struct MoreauJeanLocated<const D: usize> {
     rooms: Vec<f64>,
     /// Contacts that are past it at the end of the attempt.
     leaving: Vec<ContactId>,
-    /// Contacts that press, in the order of `pieces`.
-    pressing: Vec<ContactId>,
+    /// Contacts that were closed before the attempt, in the order of `pieces`.
+    persisting: Vec<ContactId>,
     /// Of these, on which pieces of their surfaces they are at the start of the attempt, and at another time.
     pieces: [Vec<u32>; 2],
     /// Coordinates on the way of an attempt.
@@ -164,7 +164,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             on_the_way: Vec::new(),
             rooms: Vec::new(),
             leaving: Vec::new(),
-            pressing: Vec::new(),
+            persisting: Vec::new(),
             pieces: [Vec::new(), Vec::new()],
             place: Vec::new(),
             one: ContactStage::new(),
@@ -219,7 +219,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         self.strikes.reserve(contacts.min(crate::stage::RESERVED_CONTACTS));
         self.rooms.reserve(contacts);
         self.leaving.reserve(contacts);
-        self.pressing.reserve(contacts);
+        self.persisting.reserve(contacts);
         self.pieces.iter_mut().for_each(|pieces| pieces.reserve(contacts));
         self.stays.reserve(contacts);
         // Few bodies fly that have stood still before.

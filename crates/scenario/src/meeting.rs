@@ -193,9 +193,12 @@ impl Shapes {
         }
         for (number, ((shape, place), joined)) in beams.iter().zip(&layout.beams).zip(on_beam.iter()).enumerate() {
             let moved = place.support_displacement(q);
-            let (left, bottom) = (shape.left[0] + moved[0], shape.left[1] + moved[1]);
+            let own = &q[place.range.clone()];
+            // A beam without hold along its axis drifts as one.
+            let drift = place.axial_displacement_at(own, 0.5 * shape.span);
+            let (left, bottom) = (shape.left[0] + moved[0] + drift, shape.left[1] + moved[1]);
             let depth_at = |block: &PlacedOutline, along: f64| {
-                let w = place.deflection_at(&q[place.range.clone()], along).map_or(f64::NAN, |at| at.w);
+                let w = place.deflection_at(own, along).map_or(f64::NAN, |at| at.w);
                 block.depth_of([left + along, bottom + w])
             };
             // What touches with its sides penetrates no deeper than the detector tells.

@@ -12,13 +12,18 @@ const ATTEMPTS: usize = 10;
 /// Times are located to this part of the step.
 const AT_ONCE: f64 = 1e-12;
 
+/// Where as many attempts haven't done that, to this part: frames are taken where the motion without impulses goes, which may be past the
+/// end, and attempts then fall short of it and go too far in turn, by far less than this.
+const AFTER: usize = 5;
+const NEARLY_AT_ONCE: f64 = 1e-6;
+
 /// Halvings of a time, from a step to rounding.
 const HALVINGS: usize = 60;
 
 impl<const D: usize> MoreauJeanLocated<D> {
     /// Looks for contacts that pressed in the part of a step that was attempted, with this outcome, and are past the end of their surface
-    /// after it, as the corner of a block that glides off another one's side, or on another piece of it, as a disc that rolls from a side
-    /// over its corner: the force changes there at once. Where there are any, attempts the part up to just past the
+    /// after it, as the corner of a block that glides off another one's side, or that were closed before it and are on another piece, as a
+    /// disc that rolls from a side over its corner: the force changes there at once. Where there are any, attempts the part up to just past the
     /// end that is reached first, and returns the outcome of that and its length, s. What touches there instead has another normal, so
     /// that it may strike; or nothing does.
     pub(super) fn find_end(
@@ -36,11 +41,12 @@ impl<const D: usize> MoreauJeanLocated<D> {
             return Ok((outcome, None));
         }
         let (mut attempted, mut outcome_of_it) = (part.h, outcome);
-        for _ in 0..ATTEMPTS {
+        for attempt in 0..ATTEMPTS {
+            let at_once = if attempt < AFTER { AT_ONCE } else { NEARLY_AT_ONCE };
             // One that falls short is taken further.
             let between = if is_past { [0.0, attempted] } else { [attempted, part.h] };
             let tau = self.passes_end(model, from, attempted, between, work)?;
-            if is_past && attempted - tau <= AT_ONCE * part.h {
+            if is_past && attempted - tau <= at_once * part.h {
                 // What leaves at the very end does so between two parts.
                 return Ok((outcome_of_it, (attempted < part.h).then_some(attempted)));
             }
@@ -60,23 +66,24 @@ impl<const D: usize> MoreauJeanLocated<D> {
         Ok((outcome, None))
     }
 
-    /// Finds on which pieces of their surfaces contacts that press are at the start of the attempt.
+    /// Finds on which pieces of their surfaces the contacts are at the start of the attempt that were closed before it. Those without an
+    /// impulse, too: where the piece changes in the first half, the frame in the middle is that of the other piece, and along its normal a
+    /// disc that flies on from an edge has parted all through the attempt.
     fn find_pieces(&mut self, model: &Model<D>, from: &State) {
-        let Self { step, pressing, pieces, .. } = self;
-        pressing.clear();
+        let Self { step, persisting, pieces, .. } = self;
+        persisting.clear();
         let contacts = step.stage.contacts().iter();
-        let press = contacts.filter(|contact| contact.persisting && contact.p[0] > 0.0);
-        pressing.extend(press.map(|contact| contact.id));
+        persisting.extend(contacts.filter(|contact| contact.persisting).map(|contact| contact.id));
         pieces[0].clear();
-        if !pressing.is_empty() {
-            model.detector().pieces(&model.placed_at(&from.q), pressing, &mut pieces[0]);
+        if !persisting.is_empty() {
+            model.detector().pieces(&model.placed_at(&from.q), persisting, &mut pieces[0]);
         }
     }
 
     /// Whether one of these is on another piece at the end of the attempt.
     fn changes_piece(&mut self, model: &Model<D>) -> bool {
-        let Self { step, pressing, pieces: [first, now], .. } = self;
-        is_elsewhere(model, &step.step.q_at, pressing, first, now)
+        let Self { step, persisting, pieces: [first, now], .. } = self;
+        is_elsewhere(model, &step.step.q_at, persisting, first, now)
     }
 
     /// Finds the contacts that press and are past the end of their surface at the end of the attempt, which lasted `h` (s).
@@ -107,7 +114,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         Ok(())
     }
 
-    /// When the first of `ids` is past its end, or one that presses is on another piece, s, between these times, along
+    /// When the first of `ids` is past its end, or one that was closed is on another piece, s, between these times, along
     /// the motion of an attempt that lasted so long.
     fn passes_end(
         &mut self,
@@ -121,9 +128,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
             let tau = 0.5 * (inside + past);
             self.place_at(model, from, lasted, tau);
             work.locate_past_ends(model, &self.place, &self.ids, &mut self.near, &mut self.rooms)?;
-            let Self { place, pressing, pieces: [first, now], .. } = self;
+            let Self { place, persisting, pieces: [first, now], .. } = self;
             let all_over =
-                self.rooms.iter().all(|room| *room >= 0.0) && !is_elsewhere(model, place, pressing, first, now);
+                self.rooms.iter().all(|room| *room >= 0.0) && !is_elsewhere(model, place, persisting, first, now);
             *(if all_over { &mut inside } else { &mut past }) = tau;
             if past - inside <= f64::EPSILON * past {
                 break;

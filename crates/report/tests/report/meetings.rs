@@ -180,3 +180,13 @@ fn a_step_through_a_crest_of_the_ground_is_told() {
     assert!(told("20.5 m/s").is_some_and(|text| text.contains("`b` went through a crest of the ground")));
     assert_eq!(told("10 m/s"), None);
 }
+
+/// The beam is taken along by the columns that it lies on, into a post that it doesn't touch at the start.
+#[test]
+fn a_beam_that_drifts_along_its_axis_is_found_where_it_is() {
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.ci/scenes/beam-taken-along.toml");
+    let scene = std::fs::read_to_string(file).unwrap();
+    assert!(met(&summary("taken-along-freely", &scene, &[])).is_empty());
+    let post = "\n[block.post]\ndensity = \"2400 kg/m^3\"\nwidth = \"10 cm\"\nheight = \"10 cm\"\ndepth = \"10 cm\"\nposition = [\"1.3 m\", \"0 m\"]\nfixed = true\n";
+    only(&summary("taken-into-a-post", &(scene + post), &[]), "passes-through", &["`lintel` is inside `post`"]);
+}

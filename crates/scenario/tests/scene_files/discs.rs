@@ -34,6 +34,26 @@ fn a_disc_lets_go_at_the_corner_in_time() {
     }
 }
 
+/// Wherever in a step the end of the side comes, the disc falls from there on, and not from the start of the step.
+#[test]
+fn a_disc_falls_from_the_edge_and_not_before() {
+    let (g, v, end) = (9.81, 3.0, 0.03);
+    for k in 0..20 {
+        let x = -0.03 - 0.0015 * f64::from(k) / 10.0;
+        let scene = format!(
+            "[time]\nend = '{end} s'\n[world]\ngravity = '{g} m/s^2'\n\
+             [block.table]\nfixed = true\ndensity = '2000 kg/m^3'\nwidth = '1 m'\nheight = '0.5 m'\ndepth = '0.1 m'\nposition = ['-0.5 m', '0.25 m']\n\
+             [block.disc]\ndensity = '2000 kg/m^3'\nradius = '0.05 m'\ndepth = '0.1 m'\nposition = ['{x} m', '0.55 m']\nvelocity = ['{v} m/s', '0 m/s']\n\
+             [contact.c]\nbetween = ['disc', 'table']\nfriction = 0.0\n"
+        );
+        let (simulation, _) = run(&scene, "1 ms");
+        let block = simulation.layout.blocks.iter().find(|block| block.name == "disc").unwrap();
+        let fallen = -g * (end + x / v);
+        let falls = simulation.state.v[block.range.start + 1];
+        assert!((falls - fallen).abs() < 1e-7, "from {x}: {falls} m/s instead of {fallen}");
+    }
+}
+
 /// The largest height of the only block that moves, m.
 struct Highest(f64);
 

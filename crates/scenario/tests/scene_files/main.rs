@@ -6,6 +6,7 @@ mod allocations;
 mod around_ends;
 mod beams;
 mod carried;
+mod couples;
 mod crowds;
 mod discs;
 mod divided;
