@@ -10,7 +10,7 @@ import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 import { keyboardWalk, playByKeys, plotsWithoutWords, violations } from "./accessible.mjs";
 import { pageData } from "./columns.mjs";
-import { flatAtFirst, gravityOf, outOfPicture, specksAtFirst, unfoldedOnPaper, unplotted, wrongVerdicts } from "./motion.mjs";
+import { flatAtFirst, gravityOf, outOfPicture, outOfSightAtFirst, specksAtFirst, unfoldedOnPaper, unplotted, wrongVerdicts } from "./motion.mjs";
 import { otherAngles, otherLegends } from "./legends.mjs";
 import { besideTheirBeams, leaningApart, wrongSaved } from "./picture.mjs";
 import { overlaps } from "./overlaps.mjs";
@@ -89,6 +89,7 @@ async function ofRun(page, run, problem, isFirst) {
   }
   const specks = await page.evaluate(specksAtFirst);
   if (specks !== null) problem(`the picture opens on bodies of ${specks} px`);
+  (await page.evaluate(outOfSightAtFirst)).forEach(problem);
   // Of many small bodies, and of a few that go far, the picture opens on a part.
   await page.$eval("#view-all", (button) => button.click());
   // In the first window at every time there is, in the others at fewer, to save time: their pictures differ in scale only.
