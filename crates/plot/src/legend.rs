@@ -371,7 +371,9 @@ mod tests {
     #[test]
     fn a_text_is_as_wide_as_in_the_font_of_pdf_files() {
         let font = ttf_parser::Face::parse(crate::FONT, 0).unwrap();
-        for text in ["pale: the least and the largest of every 1.6 ms, of means over 100 us", "WEST on MIDDLE", "0.25 (kN)"] {
+        for text in
+            ["pale: the least and the largest of every 1.6 ms, of means over 100 us", "WEST on MIDDLE", "0.25 (kN)"]
+        {
             let advance = |letter| font.glyph_hor_advance(font.glyph_index(letter).unwrap()).unwrap();
             let units: f64 = text.chars().map(|letter| f64::from(advance(letter))).sum();
             let width = LABEL_SIZE * units / f64::from(font.units_per_em());

@@ -25,7 +25,8 @@ const FAR_OFF: f64 = 0.25;
 /// Which blocks a drawing shows that is about some of them: these, and those near them.
 fn near(recorder: &PageRecorder, last: &LastPicture<'_>, is_about: impl Fn(usize) -> bool) -> Vec<bool> {
     let outlines = placed::blocks(recorder, last.row);
-    let about: Vec<(f64, f64)> = (0..outlines.len()).filter(|k| is_about(*k)).flat_map(|k| outlines[k].concat()).collect();
+    let about: Vec<(f64, f64)> =
+        (0..outlines.len()).filter(|k| is_about(*k)).flat_map(|k| outlines[k].concat()).collect();
     let ends = |of: &dyn Fn(&(f64, f64)) -> f64| {
         about.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
     };
@@ -41,8 +42,14 @@ fn scene(recorder: &PageRecorder, last: &LastPicture<'_>, title: &str, shown: &[
     let mut drawing = Drawing::new(title);
     let blocks = placed::blocks(recorder, last.row).into_iter().zip(shown);
     let outlines: Vec<_> = blocks.filter(|(_, shown)| **shown).flat_map(|(lines, _)| lines).collect();
-    let away: Vec<&str> =
-        recorder.scenery.blocks.iter().zip(shown).filter(|(_, shown)| !**shown).map(|(block, _)| &*block.name).collect();
+    let away: Vec<&str> = recorder
+        .scenery
+        .blocks
+        .iter()
+        .zip(shown)
+        .filter(|(_, shown)| !**shown)
+        .map(|(block, _)| &*block.name)
+        .collect();
     let told = match away[..] {
         [] => None,
         [one] => Some(format!("{one} is farther off")),

@@ -406,7 +406,8 @@ impl PageRecorder {
     fn struck_at_start(step: &StepReport<'_, 2>) -> Vec<Closed> {
         let of_part = |part: Active<'_, 2>| {
             let strikes = |contact: &&Contact<2>| contact.p[0] > 0.0 && contact.u_before[0] < -contact.still;
-            let closed = move |contact: &Contact<2>| Closed { t: part.end, contact: *contact, closing: Closing::Impact };
+            let closed =
+                move |contact: &Contact<2>| Closed { t: part.end, contact: *contact, closing: Closing::Impact };
             part.contacts.iter().filter(strikes).map(closed).collect::<Vec<_>>()
         };
         step.active().flat_map(of_part).collect()
