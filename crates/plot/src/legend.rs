@@ -383,12 +383,12 @@ mod tests {
 
     #[test]
     fn names_wrap_to_the_next_row() {
-        let long = "n".repeat(30);
+        let long = "n".repeat(27);
         let entries = entries(&["a", &long, &long, "b"]);
         let rows =
             |legend: Legend, note| legend.rows(&entries, note, WIDTH).iter().map(|place| place.0).collect::<Vec<_>>();
         assert_eq!(rows(Legend::Rows, None), [0, 0, 1, 1]);
-        assert_eq!(rows(Legend::Rows, Some("a note that takes half of the row")), [0, 1, 1, 2]);
+        assert_eq!(rows(Legend::Rows, Some("a note that takes about half of the row")), [0, 1, 1, 2]);
         assert_eq!(rows(Legend::Row, None), [0; 4]);
         assert!(
             Legend::Rows.more_height(&entries, None, WIDTH) > 0.0
