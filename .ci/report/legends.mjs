@@ -58,11 +58,16 @@ export async function plotsPointedAt(page) {
   return problems;
 }
 
-/** Whether plots open on another pair than that with the largest force; `forces` are those of the page's data, unpacked. */
-export async function otherPairOpened(page, { forces }) {
+/** Whether plots open on a pair whose forces are small beside those of another that are drawn, for a blow that is small beside them, too; `data` is that of the page,
+    unpacked. */
+export async function otherPairOpened(page, { forces, scenery }) {
   const chosen = await page.$eval("#choice select", (select) => Number(select.value)).catch(() => null);
   if (chosen === null) return [];
-  const most = (contact) => Math.max(...forces.points.filter((point) => point.contact === contact).flatMap(({ normal }) => [...normal].map((n) => n ?? 0)));
-  const largest = Math.max(...forces.points.map(({ contact }) => most(contact)));
-  return most(chosen) < 0.999 * largest ? [`opens on ${forces.names[chosen]} with ${most(chosen)} N, where another pair has ${largest} N`] : [];
+  const most = (contact, of) => Math.max(0, ...forces.points.filter((point) => point.contact === contact)
+    .map((point) => [...of(point) ?? []].reduce((largest, x) => Math.max(largest, x ?? 0), 0)));
+  const drawn = (contact) => (forces.forceless?.includes(contact) ? 0 : most(contact, ({ normal, course }) => course?.[0].y ?? normal));
+  const largest = Math.max(...forces.names.map((_, contact) => drawn(contact)));
+  const fall = Math.sqrt(scenery.blocks[scenery.contacts[chosen].block].reach / 9.81);
+  const own = Math.max(drawn(chosen), most(chosen, ({ impacts }) => impacts) / fall);
+  return own < 0.999 * largest ? [`opens on ${forces.names[chosen]} with ${own} N, where another pair has ${largest} N`] : [];
 }

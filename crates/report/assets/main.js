@@ -72,12 +72,15 @@
   const sumOf = (points) => points.reduce((total, { tangential }) => tangential.map((f, i) => (f === null ? null : f + (total[i] ?? 0))), []);
   const scaled = (values, factor) => values.map((f) => (f === null ? null : f * factor));
   const active = scenery.contacts.map((_, k) => k).filter((k) => forces.points.some((point) => point.contact === k));
-  /** The contacts with the largest forces, then, of those that only strike, with the hardest impacts, in their order. */
+  /** The contacts with the largest forces, as plotted, in their order. An impulse counts as a force over a time that suits the block's size. */
   const strongestContacts = (count) => {
-    const most = (k, key) => forces.points.filter((point) => point.contact === k && point[key])
-      .reduce((size, point) => point[key].reduce((largest, x) => Math.max(largest, x ?? 0), size), 0);
-    const kept = [...active]
-      .sort((a, b) => most(b, "normal") - most(a, "normal") || most(b, "impacts") - most(a, "impacts")).slice(0, count);
+    const largest = (values) => (values ?? []).reduce((most, x) => Math.max(most, x ?? 0), 0);
+    const strength = (k) => {
+      const lasting = Math.sqrt(scenery.blocks[scenery.contacts[k].block].reach / 9.81);
+      const force = ({ normal, course }) => (forces.forceless?.includes(k) ? 0 : largest(course?.[0].y ?? normal));
+      return Math.max(...forces.points.filter(({ contact }) => contact === k).map((point) => Math.max(force(point), largest(point.impacts) / lasting)));
+    };
+    const kept = active.map((k) => [k, strength(k)]).sort(([, a], [, b]) => b - a).slice(0, count).map(([k]) => k);
     return active.filter((k) => kept.includes(k));
   };
   // So many that one would look for them: one at a time.
