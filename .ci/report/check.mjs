@@ -10,8 +10,8 @@ import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 import { keyboardWalk, playByKeys, plotsWithoutWords, violations } from "./accessible.mjs";
 import { pageData } from "./columns.mjs";
-import { flatAtFirst, gravityOf, outOfPicture, specksAtFirst, unfoldedOnPaper, unplotted, wrongVerdicts } from "./motion.mjs";
-import { otherAngles, otherLegends } from "./legends.mjs";
+import { flatAtFirst, gravityOf, outOfPicture, outOfSightAtFirst, specksAtFirst, unfoldedOnPaper, unplotted, wrongVerdicts } from "./motion.mjs";
+import { otherAngles, otherLegends, otherPairOpened, plotsPointedAt } from "./legends.mjs";
 import { besideTheirBeams, leaningApart, wrongSaved } from "./picture.mjs";
 import { overlaps } from "./overlaps.mjs";
 import { plotsDrawn, plotsOfRounding } from "./rounding.mjs";
@@ -41,7 +41,7 @@ async function anyPage(page, problem) {
   (await plotsWithoutWords(page)).forEach(problem);
   (await page.evaluate(overlaps)).forEach((text) => problem(`texts overlap in ${text}`));
   // Tables that fit a telephone, and those of records and half cycles: numbers that one doesn't see without scrolling.
-  const cut = await page.$$eval(".fit, #records .scroll, #reactions .scroll, #rocking .scroll", (all) => all.filter((one) => one.scrollWidth > one.clientWidth)
+  const cut = await page.$$eval(".fit, #model .scroll, #records .scroll, #reactions .scroll, #rocking .scroll", (all) => all.filter((one) => one.scrollWidth > one.clientWidth)
     .map((one) => one.querySelector("tr").textContent.trim()));
   cut.forEach((text) => problem(`numbers of a table are out of view: ${text}`));
   const wide = await page.$$eval("#tiles dd", (all) => all.filter((one) => one.scrollWidth > one.clientWidth || one.getClientRects().length > 1
@@ -56,6 +56,8 @@ async function ofRun(page, run, problem, isFirst) {
   const summary = JSON.parse(readFileSync(join(run, "summary.json"), "utf8"));
   const trajectory = table(join(run, "trajectory.csv"));
   const frames = Number(await page.getAttribute("#time-slider", "max")) + 1;
+  const specks = await page.evaluate(specksAtFirst);
+  if (specks !== null) problem(`the picture opens on bodies of ${specks} px`);
   for (const fraction of [0, 0.21, 0.5, 0.83, 1]) {
     await page.$eval("#time-slider", (slider, index) => {
       slider.value = index;
@@ -87,8 +89,7 @@ async function ofRun(page, run, problem, isFirst) {
       problem(`${path} is ${value}, not ${wanted}`);
     }
   }
-  const specks = await page.evaluate(specksAtFirst);
-  if (specks !== null) problem(`the picture opens on bodies of ${specks} px`);
+  (await page.evaluate(outOfSightAtFirst)).forEach(problem);
   // Of many small bodies, and of a few that go far, the picture opens on a part.
   await page.$eval("#view-all", (button) => button.click());
   // In the first window at every time there is, in the others at fewer, to save time: their pictures differ in scale only.
@@ -101,8 +102,10 @@ async function ofRun(page, run, problem, isFirst) {
   (await page.evaluate(besideTheirBeams)).forEach(problem);
   (await flatAtFirst(page, trajectory)).forEach(problem);
   (await page.evaluate(otherLegends)).forEach((text) => problem(`refers to another legend: ${text}`));
+  (await plotsPointedAt(page)).forEach(problem);
   (await page.evaluate(unfoldedOnPaper)).forEach((text) => problem(`unfolds on paper: ${text}`));
   const data = pageData(await page.$eval("#data", (element) => element.textContent));
+  (await otherPairOpened(page, data)).forEach(problem);
   wrongVerdicts(summary, trajectory, data, gravityOf(readFileSync(join(run, "scene.toml"), "utf8"))).forEach(problem);
   (await unplotted(page, trajectory)).forEach(problem);
   const envelopes = join(run, "envelopes.csv");

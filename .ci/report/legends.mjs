@@ -39,3 +39,35 @@ export function otherLegends() {
       .map(([name, stroke]) => `${fold.closest(".panel").id}: ${name} is ${stroke}, in ${title} ${meant.get(name)}`);
   });
 }
+
+/** What plots lack that are pointed at: the time under the pointer; impulses as bars. */
+export async function plotsPointedAt(page) {
+  const problems = [];
+  const plot = await page.$("#plots .panel:not([hidden]) svg.plot:has(.hover-time)") ?? await page.$("#plots .panel:not([hidden]) svg.plot:has(.hover)");
+  if (plot) {
+    await plot.scrollIntoViewIfNeeded();
+    const { x, y, width } = await plot.boundingBox();
+    await page.mouse.move(x + 0.5 * width, y + 30);
+    const told = await plot.evaluate((svg) => svg.querySelector(".hover-time")?.textContent ?? "");
+    if (!/^[0-9.]+ (s|ms|µs|ns)$/.test(told)) problems.push(`a plot that is pointed at tells the time "${told}"`);
+    await page.mouse.move(0, 0);
+    if (await plot.evaluate((svg) => svg.querySelector(".hover-time")?.textContent)) problems.push("a plot tells a time that isn't pointed at");
+  }
+  const lines = await page.$$eval('[id^="panel-impacts-"] .curve', (all) => all.length);
+  if (lines > 0) problems.push("impulses are drawn as lines, not as bars");
+  return problems;
+}
+
+/** Whether plots open on a pair whose forces are small beside those of another that are drawn, for a blow that is small beside them, too; `data` is that of the page,
+    unpacked. */
+export async function otherPairOpened(page, { forces, scenery }) {
+  const chosen = await page.$eval("#choice select", (select) => Number(select.value)).catch(() => null);
+  if (chosen === null) return [];
+  const most = (contact, of) => Math.max(0, ...forces.points.filter((point) => point.contact === contact)
+    .map((point) => [...of(point) ?? []].reduce((largest, x) => Math.max(largest, x ?? 0), 0)));
+  const drawn = (contact) => (forces.forceless?.includes(contact) ? 0 : most(contact, ({ normal, course }) => course?.[0].y ?? normal));
+  const largest = Math.max(...forces.names.map((_, contact) => drawn(contact)));
+  const fall = Math.sqrt(scenery.blocks[scenery.contacts[chosen].block].reach / 9.81);
+  const own = Math.max(drawn(chosen), most(chosen, ({ impacts }) => impacts) / fall);
+  return own < 0.999 * largest ? [`opens on ${forces.names[chosen]} with ${own} N, where another pair has ${largest} N`] : [];
+}

@@ -26,6 +26,28 @@ export function outOfPicture(every) {
   return found;
 }
 
+/** Bodies that leave a picture that opens close to a few of them, and says so: it is to widen, or to follow them. Runs in the page. */
+export function outOfSightAtFirst() {
+  const said = document.getElementById("scene-keys").textContent;
+  if (!/widens as they leave|picture follows the bodies/.test(said)) return [];
+  const slider = document.getElementById("time-slider");
+  const root = document.getElementById("scene");
+  const { width, height } = root.viewBox.baseVal;
+  const found = new Set();
+  const show = (frame) => {
+    slider.value = frame;
+    slider.dispatchEvent(new Event("input"));
+    for (const body of root.querySelectorAll("[data-body] .body")) {
+      const box = body.getBBox();
+      const inside = box.x >= 0 && box.y >= 0 && box.x + box.width <= width && box.y + box.height <= height;
+      if (!inside) found.add(`${body.closest("[data-body]").dataset.body} leaves the picture that opens close to it`);
+    }
+  };
+  for (let part = 0; part <= 40; part++) show(Math.round((part / 40) * Number(slider.max)));
+  show(0);
+  return [...found];
+}
+
 /** The size of the bodies as the page opens, px, if they are too small to be seen; null otherwise. Runs in the page. */
 export function specksAtFirst() {
   const sizes = [...document.querySelectorAll("#scene [data-body] .body")].map((shape) => shape.getBBox())
@@ -37,11 +59,13 @@ export function specksAtFirst() {
 /** Whether the plots open on a flat line: on all of a run in which something moves in its first or last twentieth only. */
 export async function flatAtFirst(page, trajectory) {
   const [start, end] = [trajectory[0].t, trajectory[trajectory.length - 1].t];
-  const fromGround = await page.evaluate(() => document.body.textContent.includes("relative to the ground"));
+  const base = await page.evaluate(() => document.body.textContent.match(/relative to the (ground|supports)/)?.[1]);
+  // Of supports there are none but those of the only beam.
+  const bases = Object.keys(trajectory[0]).filter((key) => (base === "ground" ? /^ground\./ : /\.support\./).test(key));
   const moves = (key) => {
-    // On ground that moves it counts what moves on it.
-    const ground = `ground.${key.split(".").pop()}`;
-    const values = trajectory.map((row) => row[key] - (fromGround && /[xy]$/.test(key) ? row[ground] ?? 0 : 0));
+    // On ground or supports that move it counts what moves on them.
+    const under = base && /[xy]$/.test(key) ? bases.find((one) => one.split(".").pop() === key.split(".").pop()) : undefined;
+    const values = trajectory.map((row) => row[key] - (under ? row[under] : 0));
     const [low, high] = values.reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
     const last = values[values.length - 1];
     // What is rounding isn't plotted.

@@ -286,8 +286,9 @@ mod tests {
     fn a_note_on_all_panels_is_below_the_axis_and_makes_the_figure_taller() {
         let panel = Panel::new(Axis::between("y", 0.0, 1.0)).with([Series::line("", [(0.0, 0.0), (1.0, 1.0)])]);
         let figure = Figure::new("f", "t", Axis::between("x", 0.0, 1.0)).panel(panel).width_mm(84.0);
-        let noted =
-            figure.clone().note("pale: all steps; strong: without vibrations of periods below 20 ms".to_owned());
+        let noted = figure
+            .clone()
+            .note("pale: all steps; strong: without vibrations of periods below 20 ms, not across impacts".to_owned());
         let lines = noted.note_lines();
         assert_eq!(lines.len(), 2);
         assert!((noted.height_mm() - figure.height_mm() - 2.0 * ROW / UNITS_PER_MM).abs() < 1e-9);

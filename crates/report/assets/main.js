@@ -72,12 +72,15 @@
   const sumOf = (points) => points.reduce((total, { tangential }) => tangential.map((f, i) => (f === null ? null : f + (total[i] ?? 0))), []);
   const scaled = (values, factor) => values.map((f) => (f === null ? null : f * factor));
   const active = scenery.contacts.map((_, k) => k).filter((k) => forces.points.some((point) => point.contact === k));
-  /** The contacts with the hardest impacts, then those with the largest forces, in their order. */
+  /** The contacts with the largest forces, as plotted, in their order. An impulse counts as a force over a time that suits the block's size. */
   const strongestContacts = (count) => {
-    const most = (k, key) => forces.points.filter((point) => point.contact === k && point[key])
-      .reduce((size, point) => point[key].reduce((largest, x) => Math.max(largest, x ?? 0), size), 0);
-    const kept = [...active]
-      .sort((a, b) => most(b, "impacts") - most(a, "impacts") || most(b, "normal") - most(a, "normal")).slice(0, count);
+    const largest = (values) => (values ?? []).reduce((most, x) => Math.max(most, x ?? 0), 0);
+    const strength = (k) => {
+      const lasting = Math.sqrt(scenery.blocks[scenery.contacts[k].block].reach / 9.81);
+      const force = ({ normal, course }) => (forces.forceless?.includes(k) ? 0 : largest(course?.[0].y ?? normal));
+      return Math.max(...forces.points.filter(({ contact }) => contact === k).map((point) => Math.max(force(point), largest(point.impacts) / lasting)));
+    };
+    const kept = active.map((k) => [k, strength(k)]).sort(([, a], [, b]) => b - a).slice(0, count).map(([k]) => k);
     return active.filter((k) => kept.includes(k));
   };
   // So many that one would look for them: one at a time.
@@ -139,7 +142,7 @@
     if (strikes.length) {
       const [prefix, factor] = forces.impulse_units[k];
       plots.add({
-        id: `impacts-${k}`, contact: k, title: `Normal impulse of impacts${suffix}`, unit: `${prefix}N s`, series: series("impacts", factor, strikes), floor: 0, least: 1e-300, height: 110,
+        id: `impacts-${k}`, contact: k, title: `Normal impulse of impacts${suffix}`, unit: `${prefix}N s`, series: series("impacts", factor, strikes).map((line) => ({ ...line, bars: true })), floor: 0, least: 1e-300, height: 110,
       });
       htmlElement("p", "note", sentence(forces.struck), byId(`panel-impacts-${k}`));
     }
@@ -435,7 +438,7 @@
   }
 
   function relayout() {
-    const wasNear = near !== null && !scene.isWhole();
+    const wasNear = near !== null && (!scene.isWhole() || scene.keepsInSight());
     scene.layout();
     if (wasNear) scene.closeUp();
     plots.redraw();
@@ -457,14 +460,14 @@
   /** Where all moves within a small part of the run, the plots open on that. */
   function openOnMotion() {
     if (!data.moving) return;
-    const { moves: [first, last], shown: [from, to], on_ground: onGround } = data.moving;
+    const { moves: [first, last], shown: [from, to], beside } = data.moving;
     plots.zoom(from, to);
     opening = { t: times[frameAt(from)], lasts: to - from };
     chooseSpeed();
     show(frameAt(from));
     const say = (t) => `${Number((t * timeUnit[1]).toPrecision(3))} ${timeUnit[0]}`;
     const when = first - start < 1e-3 * (end - start) ? `after ${say(last)}` : `before ${say(first)} or after ${say(last)}`;
-    const note = htmlElement("p", "note", `Hardly anything moves${onGround ? " on the ground" : ""} ${when}: the plots open on what does. `);
+    const note = htmlElement("p", "note", `Hardly anything moves${beside ? ` relative to ${beside}` : ""} ${when}: the plots open on what does. `);
     note.id = "opened-on";
     const whole = htmlElement("button", "link", "Show all times", note);
     whole.type = "button";

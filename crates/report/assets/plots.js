@@ -245,7 +245,18 @@ const plots = (() => {
     return turns > width() - margin.left - margin.right;
   }
 
+  /** Of what isn't but in some stretches of time, as impulses: a bar for each of these. */
+  function bars(series, x, y) {
+    let d = "";
+    for (let i = Math.max(0, indexAt(series.t, view[0])); i < series.y.length && series.t[i] <= view[1]; i++) {
+      if (series.y[i] > 0) d += `M${x(series.t[i]).toFixed(1)} ${y(0).toFixed(1)}V${y(series.y[i]).toFixed(1)}H${x(series.t[i + 1]).toFixed(1)}V${y(0).toFixed(1)}Z`;
+    }
+    // Where all of them lie on others they are dashed, as lines are.
+    return `<path class="bars" style="${stroke(series)}${series.over ? "" : `; fill: ${colour(series.index)}`}" d="${d}"/>`;
+  }
+
   function curve(series, x, y, isAlone) {
+    if (series.bars) return bars(series, x, y);
     if (series.upper) return `<path class="area" style="fill: ${colour(series.index)}" d="${area(series, x, y)}"/>`;
     const kind = `curve${series.raw ? " raw" : !isAlone && isDense(series, y) ? " dense" : ""}`;
     const solid = (series.over || series.inPart) && series.alone.includes(true)
@@ -326,8 +337,8 @@ const plots = (() => {
         + panel.series.map((series) => curve(series, px, y, panel.series.length < 2)).join("")
         + `<path class="impacts" d="${impacts}"/></g>`;
     }
-    panel.svg.innerHTML = `${inside}${body}<path class="hover"/><path class="cursor"/><rect class="selection"/>`;
-    [panel.hover, panel.cursor, panel.selection] = [".hover", ".cursor", ".selection"].map((s) => panel.svg.querySelector(s));
+    panel.svg.innerHTML = `${inside}${body}<path class="hover"/><text class="hover-time" text-anchor="middle"/><path class="cursor"/><rect class="selection"/>`;
+    [panel.hover, panel.hoverTime, panel.cursor, panel.selection] = [".hover", ".hover-time", ".cursor", ".selection"].map((s) => panel.svg.querySelector(s));
     moveCursor(panel);
   }
 
@@ -442,13 +453,27 @@ const plots = (() => {
     }
   }
 
-  function hoverAt(pointed) {
+  /** Shows values at a time in all plots, and that time at its line in the one under the pointer. */
+  function hoverAt(pointed, under) {
     const t = pointed !== null && curves.thinned ? times[frameAt(pointed)] : pointed;
     for (const panel of panels.filter((one) => !one.portrait)) {
+      panel.hoverTime.textContent = panel === under && t !== null ? pointedTime(t) : "";
+      if (panel === under && t !== null) {
+        const half = labelWidth(panel.hoverTime.textContent) / 2 + 3;
+        const middle = Math.min(width() - margin.right - half, Math.max(margin.left + half, px(t)));
+        setAll(panel.hoverTime, { x: middle.toFixed(1), y: panel.height - margin.bottom - 5 });
+      }
       const d = t === null ? "M0 0" : `M${px(t).toFixed(1)} ${margin.top}V${panel.height - margin.bottom}`;
       panel.hover.setAttribute("d", d);
     }
     readOut(t ?? now);
+  }
+
+  /** A time under the pointer, as fine as a pixel shows it, or as steps are long. */
+  function pointedTime(t) {
+    const [unit, factor] = timeUnit;
+    const finest = Math.max(data.dt, (view[1] - view[0]) / width()) * factor;
+    return `${t === start ? "0" : (t * factor).toFixed(Math.min(9, Math.max(0, Math.ceil(-Math.log10(finest)))))} ${unit}`;
   }
 
   function listen(panel) {
@@ -466,7 +491,7 @@ const plots = (() => {
     });
     panel.svg.addEventListener("pointermove", (event) => {
       const t = timeAt(panel, event);
-      hoverAt(t);
+      hoverAt(t, panel);
       if (from && Math.abs(event.clientX - from.x) > 4) select(from.t, t);
     });
     panel.svg.addEventListener("pointerup", (event) => {

@@ -157,6 +157,8 @@ const scene = (() => {
   /** The view that shows everything at all times. */
   let whole = view;
   let followed = null;
+  /** How closely the picture looks at bodies that it keeps in sight: it widens while they leave it. None where the reader chose what to look at. */
+  let closest = null;
   /** Whether the picture goes up and down with what it follows, too. */
   let followsUp = true;
 
@@ -169,6 +171,7 @@ const scene = (() => {
     height = Math.max(isFarFlung(scale) ? 320 : 230, Math.ceil(padding.top + padding.bottom + up * scale));
     whole = { x: (box[0] + box[2]) / 2, y: box[1], scale };
     view = { ...whole };
+    closest = null;
     setAll(root, { viewBox: `0 0 ${width} ${height}`, width, height });
     build();
   }
@@ -196,13 +199,17 @@ const scene = (() => {
 
   /** Zooms about a point of the picture, by default its middle; never further out than all. */
   function zoomBy(factor, at = [width / 2, height / 2]) {
+    closest = null;
     const scale = Math.max(whole.scale, Math.min(1e4 * whole.scale, view.scale * factor));
     if (scale === whole.scale && !followed) return look(whole.x, whole.y, whole.scale);
     const [x, y] = [view.x + (at[0] - width / 2) / view.scale, view.y + (height - padding.bottom - at[1]) / view.scale];
     return look(x - (at[0] - width / 2) / scale, y - (height - padding.bottom - at[1]) / scale, scale);
   }
 
-  const panBy = (across, down) => look(view.x - across / view.scale, view.y + down / view.scale, view.scale);
+  function panBy(across, down) {
+    closest = null;
+    look(view.x - across / view.scale, view.y + down / view.scale, view.scale);
+  }
 
   /** The mean place of the bodies. */
   function middleOf(at) {
@@ -213,19 +220,45 @@ const scene = (() => {
 
   /** Keeps the bodies where they are in the picture, or lets them move through it. */
   function follow(on) {
-    followed = on ? middleOf(frame) : null;
+    [followed, closest] = [on ? middleOf(frame) : null, null];
     followsUp = true;
     if (!on) return look(whole.x, whole.y, whole.scale);
     // As large as they are, with as much around them again.
-    const box = [Infinity, Infinity, -Infinity, -Infinity];
-    scenery.blocks.forEach(({ reach }, k) => {
-      const { x, y } = truePose(k, frame);
-      [x - reach, y - reach].forEach((low, i) => { box[i] = Math.min(box[i], low); });
-      [x + reach, y + reach].forEach((high, i) => { box[2 + i] = Math.max(box[2 + i], high); });
-    });
+    const box = boxOf(scenery.blocks.keys(), frame);
     const [inner, tall] = [width - padding.left - padding.right, height - padding.top - padding.bottom];
     const scale = Math.max(whole.scale, Math.min(inner / (2 * (box[2] - box[0])), tall / (1.4 * (box[3] - box[1]))));
     return look((box[0] + box[2]) / 2, box[1] - 0.05 * (box[3] - box[1]), scale);
+  }
+
+  /** The box around some blocks in a picture: left, bottom, right, top. */
+  function boxOf(blocks, at) {
+    const box = [Infinity, Infinity, -Infinity, -Infinity];
+    for (const k of blocks) {
+      const { reach } = scenery.blocks[k];
+      const { x, y } = truePose(k, at);
+      if (!Number.isFinite(x + y)) continue;
+      box[0] = Math.min(box[0], x - reach);
+      box[1] = Math.min(box[1], y - reach);
+      box[2] = Math.max(box[2], x + reach);
+      box[3] = Math.max(box[3], y + reach);
+    }
+    return box;
+  }
+
+  /** The view of a picture that keeps its bodies in sight: as close as it began, or so much wider, by steps for it to stand still between them, that all of
+      them are in it. */
+  function inSight(at) {
+    const box = boxOf(free, at);
+    const [inner, tall] = [width - padding.left - padding.right, height - padding.top - padding.bottom];
+    const has = ({ x, y, scale }) => box[0] >= x - inner / 2 / scale && box[2] <= x + inner / 2 / scale && box[1] >= y - 0.5 * size && box[3] <= y + tall / scale;
+    const by = followed ? middleOf(at).map((now, k) => now - closest.middle[k]) : [0, 0];
+    const near = { x: closest.x + by[0], y: closest.y + (followsUp ? by[1] : 0), scale: closest.scale };
+    if (has(near)) return near;
+    for (let scale = near.scale / 1.25; scale > whole.scale; scale /= 1.25) {
+      const wide = { x: (box[0] + box[2]) / 2, y: followsUp ? (box[1] + box[3]) / 2 - 0.5 * tall / scale : whole.y, scale };
+      if (has(wide)) return wide;
+    }
+    return whole;
   }
 
   /** Bodies of fewer pixels are hardly seen, those of a few bodies that go far not to turn; the picture then opens closer, with bodies of this many. */
@@ -295,18 +328,21 @@ const scene = (() => {
     const [across, up] = box.map(([low, high]) => high - low + 2 * size);
     const ways = free.map(wayOf);
     const together = Math.min(...ways) > 0.5 * Math.max(...ways);
-    const closest = Math.min(seen / size, inner / across);
+    const near = Math.min(seen / size, inner / across);
     // With all heights in the picture, so that the ground stays in view, if the bodies are still seen.
     const all = bounds();
-    const level = Math.min(closest, tall / (all[3] - all[1]));
+    const level = Math.min(near, tall / (all[3] - all[1]));
     const upright = level * size >= smallestOfFew;
-    const scale = upright ? level : Math.min(closest, tall / up);
+    const scale = upright ? level : Math.min(near, tall / up);
     const x = together ? middleOf(0)[0] : (box[0][0] + box[0][1]) / 2;
     followed = together ? middleOf(frame) : null;
     followsUp = !upright;
-    look(together ? followed[0] : x, upright ? whole.y : (together ? followed[1] : box[1][0]) - 0.5 * tall / scale, scale);
+    // From where it looks at them at the start, whichever picture is shown now.
+    closest = { x, y: upright ? whole.y : (together ? middleOf(0)[1] : box[1][0]) - 0.5 * tall / scale, scale, middle: middleOf(0) };
+    const opens = inSight(frame);
+    look(opens.x, opens.y, opens.scale);
     return together ? "The picture follows the bodies; “Show all” shows the whole way. "
-      : "Opened where the bodies start; “Show all” shows the whole way. ";
+      : "Opened where the bodies start, and widens as they leave; “Show all” shows the whole way. ";
   }
 
   /** Where the picture is in all of it: a line at its top. */
@@ -715,7 +751,14 @@ const scene = (() => {
   function draw(position, memory = 0) {
     const at = crowded ? position : Math.round(position);
     frame = at;
-    if (followed) {
+    if (closest) {
+      const next = inSight(at);
+      if (followed) followed = middleOf(at);
+      if (next.scale !== view.scale || Math.hypot(next.x - view.x, next.y - view.y) * view.scale > 0.1) {
+        look(next.x, next.y, next.scale);
+        return;
+      }
+    } else if (followed) {
       const now = middleOf(at);
       const by = [now[0] - followed[0], followsUp ? now[1] - followed[1] : 0];
       // Less than a tenth of a pixel is not seen to move.
@@ -809,10 +852,11 @@ const scene = (() => {
     suitable,
     root,
     showAll: () => {
-      followed = null;
+      [followed, closest] = [null, null];
       look(whole.x, whole.y, whole.scale);
     },
     isWhole,
+    keepsInSight: () => closest !== null,
     isFollowing: () => followed !== null,
     onView(f) { onView = f; },
     forces(how) {
@@ -821,7 +865,7 @@ const scene = (() => {
     },
     exaggerate(factor) {
       exaggeration = factor;
-      followed = null;
+      [followed, closest] = [null, null];
       layout();
       onView(true);
     },

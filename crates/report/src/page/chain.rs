@@ -87,8 +87,8 @@ impl<'a> LastPicture<'a> {
         Some(Self { interval: [from, to], poses, row, thrusts })
     }
 
-    /// The most free blocks that forces link with each other; supports end the way of a force.
-    pub(super) fn most_linked(&self, is_free: impl Fn(usize) -> bool) -> usize {
+    /// By blocks: how many free ones forces link with each other there; supports end the way of a force.
+    pub(super) fn linked(&self, is_free: impl Fn(usize) -> bool) -> Vec<usize> {
         let mut parents: Vec<usize> = (0..self.poses.len()).collect();
         fn root(parents: &mut [usize], mut block: usize) -> usize {
             while parents[block] != block {
@@ -111,7 +111,7 @@ impl<'a> LastPicture<'a> {
         for block in (0..parents.len()).filter(|block| is_free(*block)) {
             counts[root(&mut parents, block)] += 1;
         }
-        counts.into_iter().max().unwrap_or(0)
+        (0..self.poses.len()).map(|block| counts[root(&mut parents, block)]).collect()
     }
 }
 

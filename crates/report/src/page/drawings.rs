@@ -19,10 +19,42 @@ const WIDEST: f64 = 2.4;
 /// Width of a drawing within its margins, mm.
 const DRAWING: f64 = 113.0;
 
-/// The scene where it is in the last picture.
-fn scene(recorder: &PageRecorder, last: &LastPicture<'_>, title: &str) -> Drawing {
+/// What is this part of the size of what a drawing is about away from it isn't drawn: a ball that rolled off would make all else small.
+const FAR_OFF: f64 = 0.25;
+
+/// Which blocks a drawing shows that is about some of them: these, and those near them.
+fn near(recorder: &PageRecorder, last: &LastPicture<'_>, is_about: impl Fn(usize) -> bool) -> Vec<bool> {
+    let outlines = placed::blocks(recorder, last.row);
+    let about: Vec<(f64, f64)> =
+        (0..outlines.len()).filter(|k| is_about(*k)).flat_map(|k| outlines[k].concat()).collect();
+    let ends = |of: &dyn Fn(&(f64, f64)) -> f64| {
+        about.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+    };
+    let (across, up) = (ends(&|at| at.0), ends(&|at| at.1));
+    let room = FAR_OFF * (across.1 - across.0).max(up.1 - up.0);
+    let within = |x: f64, (low, high): (f64, f64)| (low - room..=high + room).contains(&x);
+    let is_near = |points: &placed::Points| points.iter().all(|(x, y)| within(*x, across) && within(*y, up));
+    outlines.iter().map(|lines| about.is_empty() || lines.iter().all(is_near)).collect()
+}
+
+/// The shown blocks of the scene where it is in the last picture, with what is said of the others.
+fn scene(recorder: &PageRecorder, last: &LastPicture<'_>, title: &str, shown: &[bool]) -> (Drawing, Option<String>) {
     let mut drawing = Drawing::new(title);
-    let outlines = placed::blocks(recorder, last.row).concat();
+    let blocks = placed::blocks(recorder, last.row).into_iter().zip(shown);
+    let outlines: Vec<_> = blocks.filter(|(_, shown)| **shown).flat_map(|(lines, _)| lines).collect();
+    let away: Vec<&str> = recorder
+        .scenery
+        .blocks
+        .iter()
+        .zip(shown)
+        .filter(|(_, shown)| !**shown)
+        .map(|(block, _)| &*block.name)
+        .collect();
+    let told = match away[..] {
+        [] => None,
+        [one] => Some(format!("{one} is farther off")),
+        _ => Some(format!("{} blocks are farther off", away.len())),
+    };
     // As far as the blocks are.
     let ends =
         outlines.iter().flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(at.0), b.max(at.0)));
@@ -30,7 +62,8 @@ fn scene(recorder: &PageRecorder, last: &LastPicture<'_>, title: &str) -> Drawin
     if let Some(surface) = placed::ground(recorder, last.row, ends.0 - room, ends.1 + room) {
         drawing = drawing.ground(surface);
     }
-    drawing.outlines(placed::beams(recorder, last.row), Colour::Grid).outlines(outlines, Colour::Shade)
+    drawing = drawing.outlines(placed::beams(recorder, last.row), Colour::Grid).outlines(outlines, Colour::Shade);
+    (drawing, told)
 }
 
 /// When, and over how long the forces are means.
@@ -44,12 +77,16 @@ fn time_note([from, to]: [f64; 2]) -> String {
 pub(super) fn force_chains(recorder: &PageRecorder) -> Option<Drawing> {
     let scenery = &recorder.scenery;
     let is_free = |block: usize| !scenery.blocks[block].driven;
-    let last = LastPicture::of(recorder).filter(|last| scenery.has_network() && last.most_linked(is_free) >= FEWEST)?;
+    let mut last = LastPicture::of(recorder).filter(|_| scenery.has_network())?;
+    let linked = last.linked(is_free);
+    linked.iter().find(|count| **count >= FEWEST)?;
+    let near = near(recorder, &last, |block| linked[block] >= FEWEST);
+    last.thrusts.retain(|thrust| near[thrust.block]);
     let largest = last.thrusts.iter().map(Thrust::size).fold(0.0, f64::max);
-    let mut drawing = scene(recorder, &last, "Contact forces as a network at the end of the run");
+    let (mut drawing, away) = scene(recorder, &last, "Contact forces as a network at the end of the run", &near);
     let mut reaches: Vec<f64> = scenery.blocks.iter().map(|block| block.reach).collect();
     reaches.sort_by(f64::total_cmp);
-    let poses = || last.poses.iter();
+    let poses = || last.poses.iter().zip(&near).filter(|(_, shown)| **shown).map(|(pose, _)| pose);
     let ends = |k: usize| poses().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p[k]), b.max(p[k])));
     let size = (ends(0).1 - ends(0).0).max(0.8 * (ends(1).1 - ends(1).0)) + 2.0 * reaches[reaches.len() - 1];
     let widest = WIDEST.min(0.9 * reaches[reaches.len() / 2] / size * DRAWING);
@@ -78,17 +115,18 @@ pub(super) fn force_chains(recorder: &PageRecorder) -> Option<Drawing> {
         drawing = drawing.lines(lines, widest * class as f64 / CLASSES as f64, Colour::Series(1));
     }
     let least = with_digits(least, "N", 2);
-    Some(
-        drawing
-            .key(Colour::Series(1), widest, format!("{}, the largest force", with_digits(largest, "N", 3)))
-            .note(format!("{}; those below {least} are left out", time_note(last.interval))),
-    )
+    drawing = drawing
+        .key(Colour::Series(1), widest, format!("{}, the largest force", with_digits(largest, "N", 3)))
+        .note(format!("{}; those below {least} are left out", time_note(last.interval)));
+    Some(away.into_iter().fold(drawing, Drawing::note))
 }
 
 /// The lines of thrust at the end; `many`: whether the contact forces are one of many sets then.
 pub(super) fn thrust(recorder: &PageRecorder, lines: &[ThrustLine], many: bool) -> Option<Drawing> {
     let last = LastPicture::of(recorder).filter(|_| !lines.is_empty())?;
-    let mut drawing = scene(recorder, &last, "Line of thrust at the end of the run");
+    let is_in_line = |block: usize| lines.iter().any(|line| line.blocks.contains(&recorder.scenery.blocks[block].name));
+    let near = near(recorder, &last, is_in_line);
+    let (mut drawing, away) = scene(recorder, &last, "Line of thrust at the end of the run", &near);
     for line in lines {
         let points: Vec<(f64, f64)> = line.joints.iter().map(|joint| (joint.at[0], joint.at[1])).collect();
         drawing = drawing.lines([points.clone()], 0.45, Colour::Series(1));
@@ -110,7 +148,7 @@ pub(super) fn thrust(recorder: &PageRecorder, lines: &[ThrustLine], many: bool) 
     if many {
         drawing = drawing.note(format!("The line is that of {}", redundant::NOTE));
     }
-    Some(drawing.note(time_note(last.interval)))
+    Some(away.into_iter().fold(drawing.note(time_note(last.interval)), Drawing::note))
 }
 
 /// An eccentricity, m, of a joint of this depth, m: none where it is nothing but rounding.

@@ -114,8 +114,9 @@ impl Filter {
     }
 
     /// The normal force at the borders of the buckets without fast vibrations, N: from what lies between jolts and in the
-    /// stretch in which the contact touches. `None` where the raw values are as smooth.
-    pub(super) fn normal(&self, curves: &Curves, forces: &ForceCurve) -> Option<Vec<f64>> {
+    /// stretch in which the contact touches; with whether what is drawn strays from it. `None` of what only strikes now and then, of which
+    /// a mean would make blocks as wide as the period.
+    pub(super) fn normal(&self, curves: &Curves, forces: &ForceCurve) -> Option<(Vec<f64>, bool)> {
         let borders = curves.borders();
         if forces.normal.is_empty() || !is_long(&borders) || self.period <= 0.0 {
             return None;
@@ -127,10 +128,15 @@ impl Filter {
         // Beside a jump the weights overshoot, but no contact pulls.
         means.iter_mut().for_each(|mean| *mean = mean.max(0.0));
         let largest = means.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        // Of the time in which it presses: of one that only strikes now and then, a mean would make blocks as wide as the period.
-        let pressing = || means.iter().zip(&forces.normal).filter(|(_, raw)| **raw > 0.0);
-        let strays = pressing().filter(|(mean, raw)| (*mean - *raw).abs() > STRAY * largest).count();
-        (strays as f64 > LEAST * pressing().count() as f64 && pressing().count() * 10 > means.len()).then_some(means)
+        let pressing = || (0..forces.normal.len()).filter(|bucket| forces.normal[*bucket] > 0.0);
+        // Where buckets are so long that each holds vibrations, these are in what is drawn of it, not in its mean.
+        let drawn = |bucket: usize| match &forces.course {
+            Some([normal, _]) => &normal[2 * bucket + 1..2 * bucket + 3],
+            None => std::slice::from_ref(&forces.normal[bucket]),
+        };
+        let strays = |bucket: &usize| drawn(*bucket).iter().any(|y| (y - means[*bucket]).abs() > STRAY * largest);
+        let does_stray = pressing().filter(strays).count() as f64 > LEAST * pressing().count() as f64;
+        (pressing().count() * 10 > means.len()).then_some((means, does_stray))
     }
 
     /// A quantity at the borders of the buckets without fast vibrations. `None` unless it rings: strays from what is
@@ -327,7 +333,8 @@ mod tests {
         let (curves, forces) = run(|t| 3.1 + (2.0 * std::f64::consts::PI * 400.0 * t).sin());
         let filter = Filter::of(&curves, &Jolts::default(), std::slice::from_ref(&forces.normal));
         assert!((filter.period - 0.02).abs() < 1e-12, "{filter:?}");
-        let means = filter.normal(&curves, &forces).unwrap();
+        let (means, strays) = filter.normal(&curves, &forces).unwrap();
+        assert!(strays);
         // To the ends of the run.
         assert!(means.iter().all(|mean| (mean - 3.1).abs() < 0.1), "{means:?}");
         assert_eq!(means.len(), curves.borders().len());
@@ -337,7 +344,7 @@ mod tests {
     fn there_is_no_mean_before_a_contact_touches_or_after_it_has_left() {
         let ringing = |t: f64| 3.1 + (2.0 * std::f64::consts::PI * 400.0 * t).sin();
         let (curves, forces) = run(|t| if (0.3..0.7).contains(&t) { ringing(t) } else { 0.0 });
-        let means = plain(&curves).normal(&curves, &forces).unwrap();
+        let (means, _) = plain(&curves).normal(&curves, &forces).unwrap();
         for (mean, t) in means.iter().zip(curves.borders()) {
             // To a bucket of two steps.
             let expected = if (0.296..=0.704).contains(&t) { 2.5..=3.7 } else { 0.0..=0.0 };
@@ -355,7 +362,7 @@ mod tests {
                 curves.enter(t, &[]);
                 curves.add(0, [1e-4 * force(t), 0.0], Of::Force, ContactState::Stick, 0.0);
             }
-            let means = plain(&curves).normal(&curves, &curves.forces(0).unwrap()).unwrap();
+            let (means, _) = plain(&curves).normal(&curves, &curves.forces(0).unwrap()).unwrap();
             curves.borders().into_iter().zip(means).collect::<Vec<_>>()
         };
         // Feet bear by turns, for 12 ms each, and ring.
@@ -377,7 +384,7 @@ mod tests {
             k if k % 35 == 0 => 500.0,
             _ => 0.0,
         });
-        assert_eq!(plain(&curves).normal(&curves, &forces), None);
+        assert!(!plain(&curves).normal(&curves, &forces).unwrap().1);
     }
 
     #[test]
@@ -511,7 +518,7 @@ mod tests {
     #[test]
     fn a_smooth_force_has_no_mean_beside_it() {
         let (curves, forces) = run(|t| 3.0 + t);
-        assert_eq!(plain(&curves).normal(&curves, &forces), None);
+        assert!(!plain(&curves).normal(&curves, &forces).unwrap().1);
     }
 
     fn jolts(impacts: &[f64]) -> Jolts {

@@ -23,12 +23,13 @@ pub(crate) struct Opening {
     pub(crate) moves: [f64; 2],
     /// The same with some room about it.
     pub(crate) shown: [f64; 2],
-    /// Whether that is told of what moves on the ground, which may go on moving.
-    pub(crate) on_ground: bool,
+    /// Of what moves on ground or supports, which may go on moving: beside what.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) beside: Option<&'static str>,
 }
 
 /// Where the plots open; none where something moves for more than a fifth of the run, and none of many bodies: the only motions that have plots of their own
-/// then are those of ground and supports. How ground moves counts only where nothing moves on it. None, too, where the curves of a long run, or of many blocks, are
+/// then are those of ground and supports. How ground or supports move counts only where nothing moves on them. None, too, where the curves of a long run, or of many blocks, are
 /// too coarse to be seen from near.
 pub(crate) fn opening(recorder: &PageRecorder, panels: &Panels) -> Option<Opening> {
     if recorder.scenery.is_crowded() {
@@ -37,8 +38,8 @@ pub(crate) fn opening(recorder: &PageRecorder, panels: &Panels) -> Option<Openin
     let (times, borders) = (panels.curves.times(), panels.curves.borders());
     let run = times.last()? - times.first()?;
     let motions = || panels.panels.iter().filter(|panel| panel.place == Place::Motion);
-    let on_ground = recorder.scenery.from_ground != [false; 2] && motions().any(|panel| !panel.is_prescribed());
-    let motions = motions().filter(|panel| !(on_ground && panel.is_prescribed())).flat_map(|panel| &panel.lines);
+    let is_beside = recorder.scenery.bases != [None; 2] && motions().any(|panel| !panel.is_prescribed());
+    let motions = motions().filter(|panel| !(is_beside && panel.is_prescribed())).flat_map(|panel| &panel.lines);
     let spans = motions.filter_map(|line| span(line, if line.of.is_none() { &borders } else { &times }));
     let all = spans.reduce(|[a, b], [from, to]| [a.min(from), b.max(to)]);
     let moves = all.filter(|[from, to]| to > from && to - from <= SMALL * run)?;
@@ -48,7 +49,7 @@ pub(crate) fn opening(recorder: &PageRecorder, panels: &Panels) -> Option<Openin
     if panels.curves.is_thinned() && parts < SMOOTH {
         return None;
     }
-    Some(Opening { moves, shown, on_ground })
+    Some(Opening { moves, shown, beside: is_beside.then(|| recorder.scenery.base()) })
 }
 
 /// When a curve leaves its first value and comes to its last one.

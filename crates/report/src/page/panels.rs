@@ -178,6 +178,8 @@ pub(crate) struct Panels {
     pub(crate) tangential: Vec<bool>,
     /// What equilibrium leaves open of the forces, by contacts.
     pub(crate) redundant: Vec<Redundant>,
+    /// Which contact points have a strong mean over what rings: decided from all that was kept, so that the page shows the same as the figures.
+    has_mean: Vec<bool>,
 }
 
 impl Panels {
@@ -188,12 +190,15 @@ impl Panels {
         if numbers <= NUMBERS {
             return all;
         }
-        Self::with(recorder, all.curves.in_at_most(buckets * NUMBERS / numbers))
+        let has_mean = all.has_mean;
+        Self { has_mean, ..Self::with(recorder, all.curves.in_at_most(buckets * NUMBERS / numbers)) }
     }
 
     /// Those of figures, which are as fine as the curves that were kept.
     pub(crate) fn in_full(recorder: &PageRecorder) -> Self {
-        Self::with(recorder, recorder.kept.curves.ended())
+        let mut panels = Self::with(recorder, recorder.kept.curves.ended());
+        panels.has_mean = panels.points_with_means(recorder);
+        panels
     }
 
     fn with(recorder: &PageRecorder, curves: Curves) -> Self {
@@ -227,6 +232,7 @@ impl Panels {
             left_out: Vec::new(),
             negligible: Vec::new(),
             untraced: Vec::new(),
+            has_mean: Vec::new(),
         };
         let sums = (0..recorder.scenery.contacts.len()).map(|pair| panels.sum(recorder, pair));
         panels.sums = sums.collect();
@@ -273,20 +279,43 @@ impl Panels {
         self.redundant[pair].shares
     }
 
-    /// The normal forces of contact points without their fast vibrations, N, at the borders of the buckets; none where they hardly differ. With what is
-    /// to be told of the vibrations taken away.
+    /// The normal forces of contact points without their fast vibrations, N, at the borders of the buckets; none of pairs where they hardly differ. With
+    /// what is to be told of the vibrations taken away.
     pub(crate) fn means_of_contacts(&self, recorder: &PageRecorder) -> (String, Vec<Option<Vec<f64>>>) {
-        // Springs make a force smooth, and without a beam nothing rings.
-        let ringing = || recorder.scenery.contacts.iter().filter(|contact| contact.rings && !contact.has_duration);
-        let points = |contact: &ContactDrawn| contact.first..contact.first + contact.points.len();
-        let forces = ringing().flat_map(|contact| &self.forces[points(contact)]).flatten();
-        let normal: Vec<Vec<f64>> = forces.map(|forces| forces.normal.clone()).collect();
-        let filter = Filter::of(&self.curves, &Jolts::of(recorder), &normal);
-        let mut means = vec![None; self.forces.len()];
-        for point in ringing().flat_map(points) {
-            means[point] = self.forces[point].as_ref().and_then(|forces| filter.normal(&self.curves, forces));
+        let filter = self.filter(recorder);
+        let mean = |(forces, has_mean): (&Option<ForceCurve>, &bool)| {
+            let (mean, _) = filter.normal(&self.curves, forces.as_ref().filter(|_| *has_mean)?)?;
+            Some(mean)
+        };
+        (filter.told(), self.forces.iter().zip(&self.has_mean).map(mean).collect())
+    }
+
+    /// Which contact points have a mean: all those of a pair of which one rings, as curves of two feet that bear the same are to look the same.
+    fn points_with_means(&self, recorder: &PageRecorder) -> Vec<bool> {
+        let filter = self.filter(recorder);
+        let mut has_mean = vec![false; self.forces.len()];
+        for points in Self::ringing(recorder) {
+            let own = self.forces[points.clone()].iter();
+            let own: Vec<Option<bool>> =
+                own.map(|forces| Some(filter.normal(&self.curves, forces.as_ref()?)?.1)).collect();
+            if own.contains(&Some(true)) {
+                has_mean[points].iter_mut().zip(own).for_each(|(has_mean, own)| *has_mean = own.is_some());
+            }
         }
-        (filter.told(), means)
+        has_mean
+    }
+
+    /// What takes the fast vibrations of contact forces away.
+    fn filter(&self, recorder: &PageRecorder) -> Filter {
+        let forces = Self::ringing(recorder).flat_map(|points| &self.forces[points]).flatten();
+        let normal: Vec<Vec<f64>> = forces.map(|forces| forces.normal.clone()).collect();
+        Filter::of(&self.curves, &Jolts::of(recorder), &normal)
+    }
+
+    /// The points of each pair that may ring: springs make a force smooth, and without a beam nothing rings.
+    fn ringing(recorder: &PageRecorder) -> impl Iterator<Item = Range<usize>> {
+        let ringing = recorder.scenery.contacts.iter().filter(|contact| contact.rings && !contact.has_duration);
+        ringing.map(|contact| contact.first..contact.first + contact.points.len())
     }
 
     /// What is to be told of the forces of springs: nothing where they are drawn step by step.

@@ -53,7 +53,7 @@ pub(crate) const ENERGIES: [&str; 11] = [
     "residual",
 ];
 
-/// Columns of a block in [`Curves`]: x, y, φ and their velocities, x and y from the ground where it moves ([`Scenery::from_ground`]). Of many blocks there are bands instead.
+/// Columns of a block in [`Curves`]: x, y, φ and their velocities, x and y from what carries them where that moves ([`Scenery::bases`]). Of many blocks there are bands instead.
 pub(crate) const BLOCK_COLUMNS: usize = 6;
 
 /// Coordinates of a block.
@@ -337,10 +337,11 @@ impl PageRecorder {
                 let (q, v) = out.split_at_mut(3);
                 q.copy_from_slice(&state.q[block.range.clone()]);
                 v.copy_from_slice(&state.v[block.range.clone()]);
-                let Some(ground) = &self.layout.ground else { continue };
-                for axis in (0..2).filter(|axis| self.scenery.from_ground[*axis]) {
-                    q[axis] -= state.q[ground.start + axis];
-                    v[axis] -= state.v[ground.start + axis];
+                for (axis, base) in self.scenery.bases.iter().enumerate() {
+                    let Some(base) = base.and_then(|base| self.scenery.driven.get(base)) else { continue };
+                    let [displacement, velocity, _] = base.values(state);
+                    q[axis] -= displacement;
+                    v[axis] -= velocity;
                 }
             }
         }
@@ -398,6 +399,18 @@ impl PageRecorder {
                 orbit.enter([t, row[k], row[BLOCK_COORDINATES + k]]);
             }
         }
+    }
+
+    /// What a run begins with: contacts that are there from the start and approach then. No table lists their impulses as impacts, as they don't follow
+    /// a flight, but forces they are none.
+    fn struck_at_start(step: &StepReport<'_, 2>) -> Vec<Closed> {
+        let of_part = |part: Active<'_, 2>| {
+            let strikes = |contact: &&Contact<2>| contact.p[0] > 0.0 && contact.u_before[0] < -contact.still;
+            let closed =
+                move |contact: &Contact<2>| Closed { t: part.end, contact: *contact, closing: Closing::Impact };
+            part.contacts.iter().filter(strikes).map(closed).collect::<Vec<_>>()
+        };
+        step.active().flat_map(of_part).collect()
     }
 
     fn take_contacts(&mut self, step: &StepReport<'_, 2>, closed: &[Closed]) {
@@ -530,7 +543,11 @@ impl PageRecorder {
         self.take_springs(step);
         self.kept.curves.enter(state.t, &self.row);
         self.take_orbits(state.t);
-        self.take_contacts(step, closed);
+        if state.step == 1 {
+            self.take_contacts(step, &[closed, &Self::struck_at_start(step)].concat());
+        } else {
+            self.take_contacts(step, closed);
+        }
         // After the contacts: what they did belongs to the picture at the step's end.
         self.take_frame(state);
         self.mark(step, state, closed);
@@ -568,9 +585,9 @@ fn fill_frame(layout: &Layout, scenery: &Scenery, state: &State, row: &mut [f64]
 /// A coordinate of a block in a row of [`Frames`], as in [`Curves`].
 pub(crate) fn coordinate_in(recorder: &PageRecorder, row: &[f64], block: usize, coordinate: usize) -> f64 {
     let own = row[BLOCK_FRAME * block + coordinate];
-    match recorder.scenery.from_ground.get(coordinate) {
-        // The ground's x, y and slope come last.
-        Some(true) => own - row[row.len() - 3 + coordinate],
+    match recorder.scenery.bases.get(coordinate) {
+        // The ground's x, y and slope come last, or how far the only beam has moved.
+        Some(Some(_)) => own - row[row.len() - if recorder.scenery.ground { 3 } else { BEAM_MOVED } + coordinate],
         _ => own,
     }
 }

@@ -212,10 +212,10 @@ pub(crate) struct Scenery {
     /// What else is prescribed of ground and supports: all of it.
     #[serde(skip)]
     pub(crate) driven: Vec<Driven>,
-    /// Whether x and y of the blocks are plotted from the ground, which moves: its own motion would hide how they slide and rock on it. Not where beams
-    /// with supports of their own may carry them.
+    /// The prescribed motions, by their numbers, from which x and y of the blocks are plotted: of the ground or of a beam's supports, which would hide how they slide
+    /// and rock on it. Not where they may stand on something else.
     #[serde(skip)]
-    pub(crate) from_ground: [bool; 2],
+    pub(crate) bases: [Option<usize>; 2],
     /// Sizes, masses, sections, friction.
     #[serde(skip)]
     pub(crate) physical: Vec<PhysicalTable>,
@@ -444,11 +444,14 @@ impl Scenery {
         });
         let contacts: Vec<_> = contacts.collect();
         let (beams, driven): (Vec<BeamDrawn>, _) = (beams.collect(), Driven::of(scene, layout));
-        let ground_moves = |axis| driven.iter().any(|driven| driven.name == "ground" && driven.component == axis);
-        // Only where all bodies may stand on it, and where it doesn't turn.
-        let all_free =
-            beams.iter().all(BeamDrawn::is_free) && scene.blocks.iter().all(|block| !block.motion.is_given());
-        let from_ground = [0, 1].map(|axis| ground_moves(axis) && !ground_moves(2) && all_free);
+        // Only where all bodies may stand on what moves, and where it doesn't turn: on the ground, or on the only beam, which its supports take along.
+        let on_ground = scene.ground.is_some() && beams.iter().all(BeamDrawn::is_free);
+        let on_beam = scene.ground.is_none() && beams.len() == 1 && !beams[0].drifts;
+        let is_base = (on_ground || on_beam)
+            && driven.iter().all(|driven| driven.component != 2 && (on_beam || driven.name == "ground"))
+            && scene.blocks.iter().all(|block| !block.motion.is_given());
+        let moving = |axis| driven.iter().position(|driven| driven.component == axis).filter(|_| is_base);
+        let bases = [0, 1].map(moving);
         Self {
             ground: scene.ground.is_some(),
             incline: scene.ground.as_ref().map_or(0.0, |ground| ground.incline),
@@ -471,7 +474,7 @@ impl Scenery {
             loads: scene.loads.clone(),
             records: scene.records().cloned().collect(),
             driven,
-            from_ground,
+            bases,
             display: scene.display,
             physical: physical::tables(scene, layout),
             weight_energy: {
@@ -479,6 +482,11 @@ impl Scenery {
                 scene.blocks.iter().map(|block| block.mass() * g * block.radius()).filter(|e| e.is_finite()).sum()
             },
         }
+    }
+
+    /// What x and y of blocks may be plotted from.
+    pub(crate) fn base(&self) -> &'static str {
+        if self.ground { "the ground" } else { "the supports" }
     }
 
     /// Whether there are too many blocks for a curve each.

@@ -178,3 +178,22 @@ fn impacts_on_springs_are_said_to_be_counted_by_corners() {
     let told = summary("told-springs", &scenario("compliant-drop"), &[]);
     assert_eq!((told.impact_count > 0, told.strikers()), (true, " (each corner counts)"));
 }
+
+/// A block that is given a spin about another point than its foot loses it in the first step: an impulse, which no table lists, and no force.
+#[test]
+fn the_impulse_with_which_a_run_begins_is_in_the_plot_of_impulses() {
+    let text = r#"
+time = { end = "0.1 s", step = "0.2 ms" }
+ground = {}
+block.west = { density = "2400 kg/m^3", width = "20 cm", height = "1 m", depth = "20 cm", on = "ground", at = "0 m", spin = "3 rad/s", tilt = "3 deg" }
+contact.base = { between = ["west", "ground"], friction = 0.6 }
+"#;
+    let run = crate::page::run("spun", text);
+    assert_eq!(run.summary.impact_count, 0);
+    let page = crate::page::data(&run.html);
+    let point = &page["forces"]["points"][0];
+    let impulses = crate::page::numbers(&point["impacts"]);
+    assert!((impulses[0] - 16.2).abs() < 0.2 && impulses[1..].iter().all(|p| *p == 0.0), "{impulses:?}");
+    // It weighs 942 N.
+    assert!(crate::page::numbers(&point["normal"]).iter().all(|force| *force < 1200.0), "{point}");
+}

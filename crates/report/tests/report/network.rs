@@ -308,3 +308,29 @@ fn loads_are_on_the_page_as_they_act() {
     );
     assert!(numbers(&load["factor"]).iter().all(|x| *x == 1.0));
 }
+
+/// A ball that has rolled far off would make the column in the drawings a stump.
+#[test]
+fn what_is_far_from_the_chain_is_left_out_of_its_drawings() {
+    let scene = |ball: &str| {
+        format!(
+            "[time]\nend = '20 ms'\nstep = '1 ms'\n[ground]\n[block.drum]\ndensity = '2400 kg/m^3'\nwidth = '40 cm'\nheight = '30 cm'\n\
+             depth = '40 cm'\nposition = ['0 m', '15 cm']\nrepeat = {{ count = 4, shift = ['0 m', '30 cm'] }}\n[block.ball]\n\
+             density = '7800 kg/m^3'\nradius = '6 cm'\ndepth = '20 cm'\nposition = ['{ball}', '6 cm']\n[contact.all]\n\
+             between = ['*', '*']\nfriction = 0.7\n"
+        )
+    };
+    let drawn = |name: &str, ball: &str| {
+        let figures = teeter_report::figures(&crate::page::run(name, &scene(ball)).page);
+        ["thrust_line.svg", "force_chains.svg"]
+            .map(|name| figures.iter().find(|(file, _)| file == name).unwrap().1.clone())
+    };
+    for svg in drawn("ball-far", "8 m") {
+        assert!(svg.contains(">ball is farther off</text>"), "{svg}");
+        // The column is as high as the drawing: its scale is no longer one of metres.
+        assert!(svg.contains(">50 cm</text>") || svg.contains(">20 cm</text>"), "{svg}");
+    }
+    for svg in drawn("ball-near", "40 cm") {
+        assert!(!svg.contains("farther off"), "{svg}");
+    }
+}

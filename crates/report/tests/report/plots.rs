@@ -474,3 +474,52 @@ fn a_sine_of_the_ground_is_one_in_a_long_run() {
         assert!((y - wanted).abs() < 1e-4, "{y}, not {wanted} at {t}");
     }
 }
+
+/// A crate that ends on its right side bears alike on both feet, one of which rings by a little more than the other.
+#[test]
+fn two_feet_that_bear_alike_both_have_a_mean_or_neither() {
+    let text = r#"
+time = { end = "1.3 s", step = "50 us" }
+material.steel = { density = "7850 kg/m^3", youngs_modulus = "210 GPa" }
+beam.deck = { material = "steel", span = "2 m", width = "10 cm", thickness = "1 cm", elements = 40, supports = ["pinned", "pinned"], damping_ratio = { mode = 1, ratio = 0.02 }, support.mid = { at = "1 m", kind = "pinned" } }
+block.crate = { material = "steel", width = "8 cm", height = "12 cm", depth = "8 cm", position = ["55 cm", "16 cm"], angle = "10 deg" }
+contact.c = { between = ["crate", "deck"], friction = 0.4, restitution = 0.3 }
+"#;
+    let run = run("two-feet", text);
+    let page = data(&run.html);
+    let points = page["forces"]["points"].as_array().unwrap().iter();
+    let feet = points.filter(|point| !point["mean"].is_null()).map(|point| point["point"].as_u64().unwrap());
+    let names = &page["scenery"]["contacts"][0]["points"];
+    let feet: Vec<&str> = feet.map(|point| names[point as usize]["label"].as_str().unwrap()).collect();
+    assert_eq!(feet, ["bottom right", "top right"]);
+    let svg = figures(&run.page).into_iter().find(|(file, _)| file == "contact_forces.svg").unwrap().1;
+    let pale = |colour: &str| {
+        svg.matches(&format!("stroke=\"{colour}\" stroke-dasharray=\"none\" stroke-width=\".5\" stroke-opacity=\".2\""))
+            .count()
+    };
+    assert!(pale("#e05206") > 0 && pale("#e05206") == pale("#00a078"), "{} {}", pale("#e05206"), pale("#00a078"));
+}
+
+/// Numbers of energies are read as a sum: those of the start, too, which are small beside the largest.
+#[test]
+fn energies_on_the_page_are_those_of_the_table_to_a_millionth_of_their_range() {
+    let run = scenario("drop");
+    let table = table(&run.folder.join("energy.csv"));
+    let total: Vec<f64> = ["kinetic", "elastic", "gravity"].iter().fold(Vec::new(), |sum, of| {
+        let own = &table.iter().find(|(name, _)| name == of).unwrap().1;
+        if sum.is_empty() { own.clone() } else { sum.iter().zip(own).map(|(a, b)| a + b).collect() }
+    });
+    let page = data(&run.html);
+    let panel = panel(&page, "energy").unwrap();
+    let per_joule = match panel["unit"].as_str().unwrap() {
+        "mJ" => 1e3,
+        "J" => 1.0,
+        other => panic!("{other}"),
+    };
+    let line = panel["series"].as_array().unwrap().iter().find(|line| line["label"] == "total").unwrap();
+    let y = numbers(&line["y"]);
+    let (low, high) = y.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), y| (a.min(*y), b.max(*y)));
+    assert!(line["y"]["unit"].as_f64().unwrap() <= 1.01e-6 * (high - low), "{}", line["y"]["unit"]);
+    let lost = (total[total.len() - 1] - total[0]) * per_joule;
+    assert!((y[y.len() - 1] - y[0] - lost).abs() <= 2e-6 * (high - low), "{} {lost}", y[y.len() - 1] - y[0]);
+}

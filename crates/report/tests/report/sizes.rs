@@ -314,3 +314,34 @@ fn figures_and_page_of_a_long_run_open_where_something_moves() {
     let crowd = data(&crate::page::run("shaken-crowd", crowd).html);
     assert!(!crowd["crowd"].is_null() && crowd["moving"].is_null());
 }
+
+/// Supports that are shaken would hide how what stands on their beam rocks and slides.
+#[test]
+fn on_a_beam_whose_supports_move_places_are_measured_from_these() {
+    let text = "[time]\nend = '1 s'\nstep = '1 ms'\n[material.steel]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n[signal.shake]\n\
+        shape = 'harmonic'\nfrequency = '2 Hz'\n[beam.shelf]\nmaterial = 'steel'\nspan = '1 m'\nwidth = '20 cm'\nthickness = '8 mm'\nelements = 20\n\
+        supports = ['pinned', 'pinned']\ndamping_ratio = { mode = 1, ratio = 0.02 }\nstart = 'static'\n\
+        motion = { acceleration = ['1 m/s^2', '0 m/s^2'], signal = 'shake' }\n[block.statue]\ndensity = '2600 kg/m^3'\nwidth = '10 cm'\n\
+        height = '15 cm'\ndepth = '10 cm'\non = 'shelf'\nat = '50 cm'\n[contact.c]\nbetween = ['statue', 'shelf']\nfriction = 0.05\n";
+    let page = data(&crate::page::run("shelf-shaken", text).html);
+    let x = crate::page::panel(&page, "x").unwrap();
+    assert_eq!(x["title"], "Position x relative to the supports");
+    let of = |panel: &str, column: &str| {
+        let panel = crate::page::panel(&page, panel).unwrap();
+        let per_metre =
+            [("m", 1.0), ("cm", 1e2), ("mm", 1e3)].into_iter().find(|(unit, _)| panel["unit"] == *unit).unwrap().1;
+        let series = panel["series"].as_array().unwrap().iter().find(|line| line["label"] == column).unwrap();
+        numbers(&series["y"]).iter().map(|x| x / per_metre).collect::<Vec<_>>()
+    };
+    let own = of("x", "");
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let table = folder.join(format!("page-{}", std::process::id())).join("shelf-shaken/trajectory.csv");
+    let table = crate::plots::table(&table);
+    let column = |name: &str| &table.iter().find(|(column, _)| column == name).unwrap().1;
+    let [statue, support] = ["statue.x", "shelf.support.x"].map(|name| *column(name).last().unwrap());
+    assert!(support.abs() > 0.05, "the supports go {support} m");
+    assert!((own.last().unwrap() - (statue - support)).abs() < 1e-5, "{:?} {statue} {support}", own.last());
+    // Where there is ground beside the beam it may stand on either.
+    let beside = data(&crate::page::run("shelf-and-ground", &format!("{text}[ground]\n")).html);
+    assert_eq!(crate::page::panel(&beside, "x").unwrap()["title"], "Position x");
+}

@@ -4,7 +4,7 @@ use super::column::{Column, SEEN, SEEN_BELOW_PEAKS};
 use super::{digits, time};
 use crate::page::curves::Does;
 use crate::page::notes::joined;
-use crate::page::panels::{Cut, Line, Panels, Place, Source, unseen_slip};
+use crate::page::panels::{Cut, Line, Measure, Panels, Place, Source, unseen_slip};
 use crate::page::recorder::{BLOCK_COLUMNS, BLOCK_COORDINATES, PageRecorder, coordinate_in};
 use crate::page::scenery::ContactDrawn;
 use crate::{shortest, with_digits};
@@ -265,7 +265,9 @@ pub(super) fn time_panels(recorder: &PageRecorder, panels: &Panels) -> Vec<Panel
         t: panel.t.as_ref().map(|t| Column::of(t, SEEN_BELOW_PEAKS)),
         late: panel.place == Place::Forces,
         series: {
-            let steps = if panel.cut { SEEN_BELOW_PEAKS } else { SEEN };
+            // Energies are read as a sum, in which the rounding of each would be seen.
+            let is_sum = matches!(panel.measure, Measure::Energy);
+            let steps = if panel.cut || is_sum { SEEN_BELOW_PEAKS } else { SEEN };
             panel.lines.iter().map(|line| SeriesData::of(line, recorder, panels, panel.least, steps)).collect()
         },
     };

@@ -7,22 +7,26 @@ use std::fmt::Write;
 use teeter_plot::escaped;
 use teeter_scenario::physical::PhysicalTable;
 
+/// Tables of more columns have on a telephone a list for each row.
+const MOST_COLUMNS: usize = 6;
+
 /// The physical data of blocks, beams and contacts.
 pub(super) fn physical(tables: &[PhysicalTable]) -> String {
     let mut html = String::new();
     for table in tables {
         let id = format!("data-{}", table.title.to_lowercase());
+        let cards = if table.head.len() > MOST_COLUMNS { " cards" } else { "" };
         let _ = write!(
             html,
-            "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"{}\"><table id=\"{id}\" class=\"physical\">\n<thead><tr>",
+            "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"{}\"><table id=\"{id}\" class=\"physical{cards}\">\n<thead><tr>",
             table.title
         );
         table.head.iter().for_each(|name| _ = write!(html, "<th scope=\"col\">{name}</th>"));
         html.push_str("</tr></thead>\n<tbody>\n");
         for row in &table.rows {
-            let cells = row.iter().enumerate().map(|(k, cell)| {
-                let cell = escaped(cell);
-                if k == 0 { format!("<th scope=\"row\">{cell}</th>") } else { format!("<td>{cell}</td>") }
+            let cells = row.iter().zip(&table.head).enumerate().map(|(k, (cell, of))| match (k, escaped(cell)) {
+                (0, cell) => format!("<th scope=\"row\">{cell}</th>"),
+                (_, cell) => format!("<td data-of=\"{}\">{cell}</td>", escaped(of)),
             });
             let _ = writeln!(html, "<tr>{}</tr>", cells.collect::<String>());
         }

@@ -138,7 +138,7 @@ impl Panels {
                 }
             };
         let lines = moving.iter().map(|(k, _)| line(&self.curves, *k, c, zero(*k), factor)).collect();
-        let on = from_ground(recorder, &self.curves, c);
+        let on = from_base(recorder, &self.curves, c);
         let name = format!("{}{on}{of_whom}", if from_start { coordinate.from_start } else { coordinate.name });
         let size = |x: f64| match c {
             // As small as that it is no decimal number.
@@ -305,13 +305,13 @@ impl Panels {
         }
     }
 
-    /// How far a block goes along an axis beside what may carry it: of the world, or the ground where it is plotted from that, and the prescribed motions
-    /// of beams along that axis, the one from which it goes least far.
+    /// How far a block goes along an axis beside what may carry it: of the world, or what it is plotted from, and the other prescribed motions
+    /// along that axis, the one from which it goes least far.
     fn carried_travel(&self, recorder: &PageRecorder, block: usize, axis: usize) -> f64 {
         let own = self.curves.curve(BLOCK_COLUMNS * block + axis);
-        let is_other = |driven: &Driven| driven.name != "ground" || !recorder.scenery.from_ground[axis];
+        let base = recorder.scenery.bases[axis];
         let along = recorder.scenery.driven.iter().enumerate();
-        let along = along.filter(|(_, driven)| driven.component == axis && is_other(driven));
+        let along = along.filter(|(which, driven)| driven.component == axis && base != Some(*which));
         let beside = along.map(|(which, _)| {
             let carrier = self.curves.curve(recorder.scenery.driven_column(which));
             travel(&own.iter().zip(&carrier).map(|(own, carrier)| own - carrier).collect::<Vec<_>>())
@@ -388,7 +388,7 @@ impl Panels {
             };
             let tops = orbits.iter().filter(|_| c == PHI).filter_map(near);
             let guides = guides(tops, factors[0]);
-            let on = from_ground(recorder, &self.curves, c);
+            let on = from_base(recorder, &self.curves, c);
             let strong = what_is_strong(orbits.iter().map(|(_, points)| (strong(points), points.len())));
             let mut lines: Vec<PortraitLine> = orbits.into_iter().map(line).collect();
             let coincide = match coincident::tell_apart(&mut lines) {
@@ -540,13 +540,12 @@ fn strong(points: &[Point]) -> Range<usize> {
 /// Parts of an orbit that cover this part of what another covers are as good.
 const AS_GOOD: f64 = 0.99;
 
-/// What is said of a coordinate that is plotted from the ground.
-fn from_ground(recorder: &PageRecorder, curves: &Curves, coordinate: usize) -> &'static str {
-    let ground = recorder.scenery.driven.iter().position(|one| one.name == "ground" && one.component == coordinate);
-    let goes = |ground: usize| largest(&curves.curve(recorder.scenery.driven_column(ground))) > 0.0;
-    match recorder.scenery.from_ground.get(coordinate) {
-        Some(true) if ground.is_some_and(goes) => " relative to the ground",
-        _ => "",
+/// What is said of a coordinate that is plotted from ground or supports that move along it.
+fn from_base(recorder: &PageRecorder, curves: &Curves, coordinate: usize) -> String {
+    let goes = |base: &usize| largest(&curves.curve(recorder.scenery.driven_column(*base))) > 0.0;
+    match recorder.scenery.bases.get(coordinate).copied().flatten().filter(goes) {
+        Some(_) => format!(" relative to {}", recorder.scenery.base()),
+        None => String::new(),
     }
 }
 
