@@ -1,4 +1,4 @@
-//! Blocks that stand on each other and rock as one, or did before they came to rest: on the base of the lowest, with the critical angle of all of them together.
+//! Blocks that stand on each other and rock as one, or did before they stood still or trembled: on the base of the lowest, with the critical angle of all of them together.
 
 use super::{BodyVerdict, Fate, Fates, ROCKED, SLID, Seen, Watch, Watched, Way};
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use teeter_integrator::State;
 use teeter_scenario::scene::{Scene, SupportingBody};
 use teeter_scenario::simulation::Layout;
 
-/// Blocks rock as one if the joints between them never opened by more than this part of the angle to which they turned; of those that came to rest not
+/// Blocks rock as one if the joints between them never opened by more than this part of the angle to which they turned; of those that stand by now not
 /// when they were turned the farthest.
 const AS_ONE: f64 = 0.02;
 
@@ -276,7 +276,7 @@ fn find_overturned(places: &[Option<usize>], seen: &[Seen], layout: &Layout, ver
     }
 }
 
-/// Says of each block that rocks on another one without turning relative to it with which it does, and of the lowest how far all of them together are from
+/// Says of each block that rocks, or rocked before it stood, on another one without turning relative to it with which it does, and of the lowest how far all of them together are from
 /// overturning.
 pub(super) fn find(
     watched: &[Watched],
@@ -293,9 +293,7 @@ pub(super) fn find(
     let rocks = |number: usize, verdict: &[BodyVerdict]| {
         places[number].filter(|of| match verdict[*of].what {
             Fate::Rocks => verdict[*of].tips.is_none(),
-            // What never moved didn't rock.
-            Fate::Rests => verdict[*of].t > Some(0.0),
-            _ => false,
+            _ => verdict[*of].stays(),
         })
     };
     // The angle to which a block of which φ/α is known has turned, rad.
@@ -306,16 +304,17 @@ pub(super) fn find(
         for _ in 0..watched.len() {
             let Some(SupportingBody::Block(below)) = watched[block].on else { break };
             let (Some(of), Some(foot)) = (rocks(block, verdict), rocks(below, verdict)) else { break };
-            if verdict[of].what != verdict[foot].what {
+            let rocks_on = verdict[of].what == Fate::Rocks;
+            if rocks_on != (verdict[foot].what == Fate::Rocks) {
                 break;
             }
             let [turned, beneath] =
                 [(block, of), (below, foot)].map(|(block, of)| turned(block, verdict[of].max_phi_over_alpha));
             let Some((turned, beneath)) = turned.zip(beneath) else { break };
-            let opened = match verdict[of].what {
+            let opened = match rocks_on {
                 // While the last small swings die out the joints open one by one: its largest swing tells how it rocked.
-                Fate::Rests => seen[block].joint.max((turned - beneath).abs()),
-                _ => seen[block].turned[0].max(seen[block].turned[1]),
+                false => seen[block].joint.max((turned - beneath).abs()),
+                true => seen[block].turned[0].max(seen[block].turned[1]),
             };
             if watched[below].driven || opened > AS_ONE * turned {
                 break;
@@ -341,8 +340,8 @@ pub(super) fn find(
             let parts = seen[root].turned.into_iter().zip(alpha).filter(|(_, alpha)| *alpha > 0.0);
             parts.fold(0.0, |most: f64, (turned, alpha)| most.max(turned / alpha))
         });
-        // What came to rest rocked if the column as a whole did; drums that are much wider than it is hardly turned.
-        if verdict[base].what == Fate::Rests && column.is_none_or(|part| part < ROCKED) {
+        // What stands by now rocked if the column as a whole did; drums that are much wider than it is hardly turned.
+        if verdict[base].what != Fate::Rocks && column.is_none_or(|part| part < ROCKED) {
             continue;
         }
         for number in group.iter().filter(|number| **number != root) {
