@@ -441,6 +441,10 @@ impl Fates {
         };
         let mut verdict: Vec<BodyVerdict> = self.blocks.iter().zip(&watch.blocks).enumerate().filter_map(of).collect();
         columns::find(&watch.blocks, &self.blocks, scene, layout, state, &mut verdict);
+        for of in &mut verdict {
+            let way = |at: Option<f64>| headline::way(scene, of, at?);
+            (of.slid_to, of.farthest_to) = (way(of.slid), way(of.farthest));
+        }
         verdict
     }
 }

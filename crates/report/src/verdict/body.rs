@@ -77,6 +77,11 @@ pub struct BodyVerdict {
     /// slid farther past its start, where it turned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub farthest: Option<f64>,
+    /// To which side that is, and the farthest, in words.
+    #[serde(skip)]
+    pub(crate) slid_to: Option<&'static str>,
+    #[serde(skip)]
+    pub(crate) farthest_to: Option<&'static str>,
     /// The farthest to the left and to the right that it slid, m, of one that slid to one side, back, and on again.
     #[serde(skip)]
     pub(crate) to_and_fro: Option<[f64; 2]>,

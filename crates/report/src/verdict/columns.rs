@@ -259,19 +259,35 @@ fn pull(watched: &[Watched], layout: &Layout, state: &State, group: &[usize], wa
     2.0 * watched[group[0]].gravity * moment[0].hypot(moment[1]) / inertia
 }
 
-/// Says of blocks that overturned as one with which they did: the lowest of them.
-fn find_overturned(places: &[Option<usize>], seen: &[Seen], layout: &Layout, verdict: &mut [BodyVerdict]) {
-    let with = |number: usize, verdict: &[BodyVerdict]| {
-        let of = &verdict[places[number]?];
-        let root = seen[number].column.filter(|column| column.beyond.is_some())?.root;
-        (of.what == Fate::Overturned).then_some(root)
-    };
-    let roots: Vec<Option<usize>> = (0..seen.len()).map(|number| with(number, verdict)).collect();
-    for (number, root) in roots.iter().enumerate() {
-        let Some(root) = root else { continue };
-        let is_whole = roots[*root] == Some(*root) && roots.iter().filter(|of| **of == Some(*root)).count() > 1;
-        if let Some(of) = places[number].filter(|_| is_whole) {
-            verdict[of].overturned_with = Some(layout.blocks[*root].name.clone());
+/// Says of blocks that overturned as one with which they did: the lowest of them. Of a column whose lower blocks came back those above that
+/// still turn as one.
+fn find_overturned(
+    watched: &[Watched],
+    places: &[Option<usize>],
+    seen: &[Seen],
+    layout: &Layout,
+    verdict: &mut [BodyVerdict],
+) {
+    let mut columns: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (number, (of, seen)) in places.iter().zip(seen).enumerate() {
+        let overturned = of.is_some_and(|of| verdict[of].what == Fate::Overturned);
+        if let Some(column) = seen.column.filter(|column| overturned && column.beyond.is_some()) {
+            columns.entry(column.root).or_default().push(number);
+        }
+    }
+    for (root, column) in columns.into_iter().filter(|(_, column)| column.len() > 1) {
+        let is_on_another = |number: &usize| matches!(watched[*number].on, Some(SupportingBody::Block(below)) if column.contains(&below));
+        let lowest: Vec<usize> = match column.contains(&root) {
+            true => vec![root],
+            false => column.iter().copied().filter(|number| !is_on_another(number)).collect(),
+        };
+        let [lowest] = lowest[..] else { continue };
+        let apart = |number: &usize| (seen[*number].angle - seen[lowest].angle).abs();
+        if lowest != root && column.iter().any(|number| apart(number) > AS_ONE * seen[lowest].angle.abs()) {
+            continue;
+        }
+        for of in column.iter().filter_map(|number| places[*number]) {
+            verdict[of].overturned_with = Some(layout.blocks[lowest].name.clone());
         }
     }
 }
@@ -289,7 +305,7 @@ pub(super) fn find(
     // Verdicts are of the blocks that aren't driven, in their order.
     let mut told = 0..verdict.len();
     let places: Vec<Option<usize>> = watched.iter().map(|of| if of.driven { None } else { told.next() }).collect();
-    find_overturned(&places, seen, layout, verdict);
+    find_overturned(watched, &places, seen, layout, verdict);
     let rocks = |number: usize, verdict: &[BodyVerdict]| {
         places[number].filter(|of| match verdict[*of].what {
             Fate::Rocks => verdict[*of].tips.is_none(),
@@ -444,6 +460,23 @@ mod tests {
         // Of what has no base nothing is told to have slid, here as elsewhere.
         watch.blocks[2].feet = None;
         assert!(keeps_its_place(&watch.blocks[2], &of));
+    }
+
+    /// All three passed their point of no return together, and the lowest came back from it.
+    #[test]
+    fn what_goes_on_above_a_block_that_came_back_overturns_as_one() {
+        let (scene, layout, mut state, mut fates) = stack();
+        for (turned, with) in [([0.4, 0.4], Some("b-2")), ([0.4, 0.5], None)] {
+            for (number, angle) in [1, 2].into_iter().zip(turned) {
+                let beyond = Some(Beyond { since: 0.0, way: Way::Left, pull: 1.0 });
+                let column = Column { root: 0, tops: [-0.2, 0.2], ahead: 0.0, angle, beyond };
+                (fates.blocks[number].column, fates.blocks[number].angle) = (Some(column), angle);
+            }
+            state.t = 1.0;
+            let verdict = fates.verdict(&scene, &layout, &state, &[]);
+            let found: Vec<_> = verdict.iter().map(|of| of.overturned_with.as_deref()).collect();
+            assert_eq!(found, [None, with, with]);
+        }
     }
 
     /// The weight of a part of a stack, one block after the other, is that of all of them at once.

@@ -456,6 +456,11 @@ fn direction(scene: &Scene, slid: f64) -> Direction {
     Direction { way, side }
 }
 
+/// To which side a way along what carries a block (m) is, in words, if it is so long that it is told.
+pub(super) fn way(scene: &Scene, of: &BodyVerdict, at: f64) -> Option<&'static str> {
+    is_told(scene, of, at).then(|| direction(scene, at).way)
+}
+
 /// That a block is still at the end, in words, of one that is not known to rest: while something shakes it, it may move again.
 fn still(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     if scene.settles_at() >= end {

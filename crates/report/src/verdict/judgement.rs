@@ -170,6 +170,8 @@ impl Seen {
             slid: slid.map(|[at, _]| at),
             slid_in_all: slid.map(|[_, in_all]| in_all),
             farthest: slides.and_then(|slides| slides.farthest(least)),
+            slid_to: None,
+            farthest_to: None,
             displaced,
             has_slid,
             elsewhere: if began_in_flight { flown } else { displaced }

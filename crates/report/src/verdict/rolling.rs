@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 use teeter_integrator::State;
 use teeter_scenario::simulation::Layout;
 
+/// A round block rolls while the point that touches slips by no more than this part of the centre's way: then what it turns says how far it went.
+const SLIPS: f64 = 0.05;
+
 /// The way of a round block along what holds it from below, from the start of the run, to the right positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Rolling {
@@ -45,9 +48,9 @@ impl Fates {
             // It turns counter-clockwise as it goes to the left.
             let way = slip - watched.reach * turn;
             let (least, creeps) = (ROLLED * watched.reach, FLAT * watched.still_time * watched.still_speed);
-            // It rolls while the point that touches moves at less than half the centre's speed, or no faster than what is still.
+            // No faster than what is still it doesn't slip.
             let rolling = &mut seen.rolling;
-            rolling.rolls = slip.abs() <= (0.5 * way.abs()).max(watched.still_speed * lasts);
+            rolling.rolls = slip.abs() <= (SLIPS * way.abs()).max(watched.still_speed * lasts);
             if rolling.rolls {
                 rolling.turned += turn;
                 rolling.rolled.go(way, state.t, least, creeps);
