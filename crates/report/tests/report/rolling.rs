@@ -28,7 +28,7 @@ fn what_skids_before_it_rolls_has_both_told() {
     let in_all = format!(
         "so far; in all {:.1} mm left of its start, turned by {:.2} turns counter-clockwise",
         -1e3 * x,
-        phi / 6.283_185
+        phi / std::f64::consts::TAU
     );
     assert!(rest.ends_with(&in_all), "{headline} {in_all}");
 }
