@@ -1,11 +1,13 @@
 //! What became of a scene, in a sentence.
 
+mod rolled;
+
 use super::carrier::{Driven, driven_below};
-use super::rolling::Rolled;
 use super::{BodyVerdict, Fate, Going, Side, many};
 use crate::all_digits::{all_digits, with_all_digits};
 use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
+use rolled::{ended_at, so_far, went};
 use teeter_integrator::State;
 use teeter_scenario::readable::{like, shortest, with_unit};
 use teeter_scenario::scene::{BlockScene, Scene};
@@ -327,58 +329,6 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
 
 /// What goes before how far something went that turned round.
 const TO_AND_FRO: &str = " to and fro";
-
-/// How far a round block rolled, in words after "rolled", and in all (m), where that is more.
-fn rolled(scene: &Scene, of: &BodyVerdict, [at, in_all]: [f64; 2], turned: f64) -> String {
-    let by = format!("{} ({})", by(scene, at), turns(turned.abs()));
-    if in_all <= MORE * at.abs() {
-        return format!(" {by}");
-    }
-    let by = if is_told(scene, of, at) { by } else { "and back to its start".to_owned() };
-    format!("{TO_AND_FRO}, {} in all, {by}", with_unit(in_all, "m"))
-}
-
-/// How far something went, and to which side.
-fn by(scene: &Scene, at: f64) -> String {
-    format!("by {} {}", with_unit(at.abs(), "m"), direction(scene, at).way)
-}
-
-/// How far a round block skidded and rolled, in words, but for what it still does.
-fn went(scene: &Scene, of: &BodyVerdict, ways: &Rolled) -> Option<String> {
-    let skidded = ways.skidded.filter(|_| of.going != Some(Going::Slides)).map(|at| skidded(scene, of, at));
-    let rolled = ways.rolled.filter(|_| of.going != Some(Going::Rolls));
-    let rolled = rolled.map(|rolled| format!("rolled{}", self::rolled(scene, of, rolled, ways.turned)));
-    let went: Vec<String> = skidded.into_iter().chain(rolled).collect();
-    (!went.is_empty()).then(|| went.join(", "))
-}
-
-fn skidded(scene: &Scene, of: &BodyVerdict, at: f64) -> String {
-    format!("skidded{}", if is_told(scene, of, at) { format!(" {}", by(scene, at)) } else { TO_AND_FRO.to_owned() })
-}
-
-/// How far a round block that rolls or slides on has done so, in words after that it does.
-fn so_far(scene: &Scene, of: &BodyVerdict, ways: &Rolled, going: Going) -> String {
-    let rolled = ways.rolled.map(|rolled| self::rolled(scene, of, rolled, ways.turned));
-    let on = match going {
-        Going::Rolls => rolled,
-        Going::Slides => ways.skidded.filter(|at| is_told(scene, of, *at)).map(|at| format!(" {}", by(scene, at))),
-        _ => None,
-    };
-    // How goes before how far.
-    let comma = if on.as_ref().is_some_and(|on| on.starts_with(TO_AND_FRO)) { "" } else { "," };
-    on.map_or_else(String::new, |on| format!("{comma}{on} so far"))
-}
-
-/// Where a round block is, and by how much it has turned, in words, where that doesn't follow from how far it rolled or skidded.
-fn ended_at(scene: &Scene, of: &BodyVerdict, ways: &Rolled) -> String {
-    let place = ways.moved.map(|at| place(scene, of, at));
-    let turned = ways.turned_in_all.map(|turn| {
-        let way = if turn < 0.0 { "clockwise" } else { "counter-clockwise" };
-        format!("turned by {} {way}", turns(turn.abs()))
-    });
-    let told: Vec<String> = place.into_iter().chain(turned).collect();
-    if told.is_empty() { String::new() } else { format!("; in all {}", told.join(", ")) }
-}
 
 /// How a block slid to both sides of its start (m) and where it is by that, in words.
 fn to_both_sides(scene: &Scene, of: &BodyVerdict, reached: [f64; 2], slid: f64) -> String {
