@@ -1,6 +1,6 @@
 //! Words and numbers that the terminal and the page tell alike.
 
-use crate::{Summary, with_digits};
+use crate::Summary;
 use teeter_scenario::scene::{BlockScene, Scene};
 
 /// A penetration below this part of the largest block is rounding of positions.
@@ -56,12 +56,11 @@ impl Summary {
         if self.max_penetration > self.told.rounding { self.max_penetration } else { 0.0 }
     }
 
-    /// What is told beside it of the penetration at the end, in words: the deepest one may have been one in passing, or be there for good. Nothing of one
+    /// What is told beside it of the penetration at the end, in words, with lengths (m) `told` as that is: the deepest one may have been one in passing, or be there for good. Nothing of one
     /// that is gone, or less than a hundredth of the deepest.
     #[must_use]
-    pub fn penetration_at_end(&self) -> Option<String> {
+    pub fn penetration_at_end(&self, told: impl Fn(f64) -> String) -> Option<String> {
         let (deepest, last) = (self.told_penetration(), self.told.last_penetration);
-        let told = |x: f64| with_digits(x, "m", 2);
         (last > self.told.rounding.max(0.01 * deepest)).then(|| match told(last) == told(deepest) {
             true => "still there at the end".to_owned(),
             false => format!("{} at the end", told(last)),

@@ -15,6 +15,7 @@ mod headline;
 mod judgement;
 mod lying;
 mod many;
+mod rolling;
 mod sliding;
 mod stance;
 mod standing;
@@ -29,6 +30,7 @@ pub(crate) use going::Going;
 use going::Touched;
 pub(crate) use headline::{OfBeams, headline, part, percent};
 pub use lying::Side;
+use rolling::Rolling;
 use serde::{Deserialize, Serialize};
 use sliding::Slides;
 use stance::{Outline, Stance};
@@ -154,14 +156,17 @@ struct Seen {
     slides: Slides,
     /// How far it had slid, and in all, m, when it passed the point of no return that it is past, or its column did.
     slid_before: Option<[f64; 2]>,
-    /// How far it has rolled on what it touches, m; of a round one.
-    rolls: Slides,
+    /// How it has rolled and skidded on what holds it; of a round one.
+    rolling: Rolling,
     /// By how much it turned in the last step, rad; memory.
     #[serde(skip)]
     turn: f64,
     /// What holds it from below in a step so far, N·s, and its slip by that; memory.
     #[serde(skip)]
     sliding: [f64; 2],
+    /// How far it has slid in a step, m, if something held it from below in that; memory.
+    #[serde(skip)]
+    slipped: Option<f64>,
     /// The end of the last step in which not both of its feet pressed, s; of a block on springs.
     lifted: Option<f64>,
     /// How high it was at the start, m; of a block that other blocks hold.
@@ -270,7 +275,7 @@ impl Fates {
         self.find_struck(watch, layout, step);
         self.slide(watch, step);
         self.touch(watch, layout, step, state.t);
-        self.roll(watch, layout, state);
+        self.roll(watch, layout, step.t_start, state);
         if self.stopped.is_none() {
             self.stopped = self.stop(watch, state.t).map(|reason| (state.t, reason));
         }
@@ -436,6 +441,10 @@ impl Fates {
         };
         let mut verdict: Vec<BodyVerdict> = self.blocks.iter().zip(&watch.blocks).enumerate().filter_map(of).collect();
         columns::find(&watch.blocks, &self.blocks, scene, layout, state, &mut verdict);
+        for of in &mut verdict {
+            let way = |at: Option<f64>| headline::way(scene, of, at?);
+            (of.slid_to, of.farthest_to) = (way(of.slid), way(of.farthest));
+        }
         verdict
     }
 }

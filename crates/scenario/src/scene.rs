@@ -137,6 +137,15 @@ impl Scene {
         motions.into_iter().chain(forces).chain(loads).fold(0.0, f64::max)
     }
 
+    /// What carries a block that isn't placed on anything, as far as its contacts tell: the ground or beam of its first contact with
+    /// one, or else the body of its first contact with another block as the first of the two.
+    #[must_use]
+    pub fn first_touched(&self, block: usize) -> Option<SupportingBody> {
+        let touched = || self.contacts.iter().filter(|contact| contact.block == block).map(|contact| contact.surface);
+        // What it can touch beside other blocks stands still where they may go away.
+        touched().find(|surface| !matches!(surface, SupportingBody::Block(_))).or_else(|| touched().next())
+    }
+
     /// Whether any bodies can touch, listed or in a crowd.
     #[must_use]
     pub fn has_contacts(&self) -> bool {

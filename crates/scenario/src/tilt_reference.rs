@@ -5,8 +5,8 @@ use crate::scene::{Placement, Scene, SupportingBody};
 use crate::simulation::{BlockPlace, Layout};
 use teeter_integrator::RockingMonitor;
 
-/// The reference for the tilt of a block: what it is placed on, otherwise the surface of its first
-/// contact in the file.
+/// The reference for the tilt of a block: what it is placed on, otherwise the ground or beam of its
+/// first contact with one.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
 pub enum TiltReference {
@@ -30,13 +30,9 @@ pub(crate) fn tilt_references(scene: &Scene, blocks: &[BlockPlace], slope: Optio
         (None, Some(ground)) if ground.incline != 0.0 => TiltReference::Incline(ground.incline),
         _ => TiltReference::Level,
     };
-    let mut first: Vec<Option<SupportingBody>> = vec![None; scene.blocks.len()];
-    for contact in &scene.contacts {
-        first[contact.block].get_or_insert(contact.surface);
-    }
     let support = |(number, placement): (usize, &Placement)| match placement {
         Placement::On { support, .. } => Some(*support),
-        Placement::Free { .. } => first[number],
+        Placement::Free { .. } => scene.first_touched(number),
     };
     let on_profile = |block: usize| {
         let under = ground_profile::slope_under(scene.ground.as_ref()?, &scene.blocks[block])?;

@@ -191,7 +191,7 @@ fn warnings(summary: &Summary) -> String {
         return String::new();
     }
     // What they say at length is folded: it would stand between the verdict and the picture.
-    let mut subjects: Vec<&str> = Vec::new();
+    let mut subjects = Vec::new();
     for warning in &summary.warnings {
         if !subjects.contains(&warning.subject()) {
             subjects.push(warning.subject());

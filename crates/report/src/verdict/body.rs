@@ -1,5 +1,6 @@
 //! What became of a block, and its numbers, as `summary.json` has them (`docs/verdict.md`).
 
+use super::rolling::Rolled;
 use super::{Going, Side, Way};
 use serde::Serialize;
 
@@ -46,6 +47,9 @@ pub struct BodyVerdict {
     pub rests_from: Option<f64>,
     /// On which side it rests, of one that does and doesn't lean on something.
     pub lies_on: Option<Side>,
+    /// On which side it stands or rocks, of one that doesn't rest, but stays where it is.
+    #[serde(skip)]
+    pub(crate) stands_on: Option<Side>,
     /// How far it slid from the start to the end, or to when it overturned, m, to the right positive: its points, while they press on what holds it from
     /// below.
     pub slid: Option<f64>,
@@ -66,13 +70,18 @@ pub struct BodyVerdict {
     /// Whether it was in the air at the start of the run.
     #[serde(skip)]
     pub(crate) began_in_flight: bool,
-    /// How far it has rolled on what it touches, to the right positive, and to and fro in all, m; of a round one.
+    /// How far it has rolled and skidded on what holds it; of a round one.
     #[serde(skip)]
-    pub(crate) rolled: Option<[f64; 2]>,
+    pub(crate) rolled: Option<Rolled>,
     /// The farthest that it slid, of one that slid back from there, m; to the right positive. Of one that has then
     /// slid farther past its start, where it turned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub farthest: Option<f64>,
+    /// To which side that is, and the farthest, in words.
+    #[serde(skip)]
+    pub(crate) slid_to: Option<&'static str>,
+    #[serde(skip)]
+    pub(crate) farthest_to: Option<&'static str>,
     /// The farthest to the left and to the right that it slid, m, of one that slid to one side, back, and on again.
     #[serde(skip)]
     pub(crate) to_and_fro: Option<[f64; 2]>,
@@ -171,6 +180,20 @@ impl BodyVerdict {
     /// Whether it has rested from the start of the run on.
     pub(crate) fn rests_throughout(&self) -> bool {
         self.rests_from == Some(self.start)
+    }
+
+    /// The side on which it rests, stands, or rocks, if that isn't its base.
+    pub(crate) fn other_side(&self) -> Option<&Side> {
+        self.lies_on.as_ref().or(self.stands_on.as_ref()).filter(|side| **side != Side::Base)
+    }
+
+    /// Whether it stands where it is after it moved: it rests, or trembles, or has been still for a while.
+    pub(crate) fn stays(&self) -> bool {
+        match self.what {
+            Fate::Rests => !self.rests_throughout(),
+            Fate::Moves => self.tips.is_none() && self.going.map_or(self.still_from > Some(self.start), Going::stays),
+            _ => false,
+        }
     }
 
     /// When it settled, s, of one that began in flight.

@@ -16,7 +16,7 @@ const LEVEL: f64 = 0.01;
 /// What carries a block.
 #[derive(Debug)]
 pub(super) struct Carrier {
-    /// What it stands on, or is joined to by its first contact.
+    /// What it stands on, or is joined to by its contacts.
     on: On,
     /// What that stands on, and so on down to what no block carries or whose motion is prescribed: what moves under the block.
     root: On,
@@ -354,25 +354,25 @@ pub(super) fn over_ground(at: [f64; 2], slope: f64, layout: &Layout, q: &[f64]) 
     cos * (at[1] - origin[1]) - sin * (at[0] - origin[0])
 }
 
-/// What a block that isn't placed on anything can touch: the block below it that it is most nearly above, or else what its first
-/// contact is with.
+/// What a block that isn't placed on anything can touch: the block below it that it is most nearly above, or else the ground or beam of its first
+/// contact with one.
 fn under(scene: &Scene, block: usize) -> Option<SupportingBody> {
-    let [x, y] = centre(scene, block)?;
+    let ([x, y], lowest) = (centre(scene, block)?, lowest(scene, block)?);
     let reach = scene.blocks[block].radius();
     let touched = scene.contacts.iter().filter_map(|contact| match contact.surface {
         SupportingBody::Block(other) if contact.block == block => Some(other),
         SupportingBody::Block(other) if other == block => Some(contact.block),
         _ => None,
     });
-    // Beside each other two blocks have their centres at much the same height.
+    // Beside each other two blocks have their centres at much the same height, or stand on the same.
     let below = touched.filter_map(|other| {
-        let [a, b] = centre(scene, other)?;
+        let ([a, b], bottom) = (centre(scene, other)?, self::lowest(scene, other)?);
         let (across, down) = ((a - x).abs(), y - b);
-        (down > 0.25 * reach && across < reach + scene.blocks[other].radius()).then_some((across.hypot(down), other))
+        let is_under = down > 0.25 * reach && bottom < lowest - LEVEL * reach;
+        (is_under && across < reach + scene.blocks[other].radius()).then_some((across.hypot(down), other))
     });
     let nearest = below.min_by(|a, b| a.0.total_cmp(&b.0));
-    let first = || scene.contacts.iter().find(|contact| contact.block == block).map(|contact| contact.surface);
-    nearest.map(|(_, other)| SupportingBody::Block(other)).or_else(first)
+    nearest.map(|(_, other)| SupportingBody::Block(other)).or_else(|| scene.first_touched(block))
 }
 
 /// About where a block begins: one on level ground at half its height; `None` on anything else.
@@ -382,6 +382,18 @@ fn centre(scene: &Scene, block: usize) -> Option<[f64; 2]> {
         Placement::On { support: SupportingBody::Ground, at, .. } => Some([at, 0.5 * scene.blocks[block].height]),
         Placement::On { .. } => None,
     }
+}
+
+/// About how high its lowest point is then, m.
+fn lowest(scene: &Scene, number: usize) -> Option<f64> {
+    let block = &scene.blocks[number];
+    let Placement::Free { position, angle, .. } = block.placement else {
+        return Some(centre(scene, number)?[1] - 0.5 * block.height);
+    };
+    let (sin, cos) = angle.sin_cos();
+    let corners = block.corners();
+    let down = |number: usize| block.corner_radius(number) - sin * corners[number].x - cos * corners[number].y;
+    Some(position[1] - (0..corners.len()).map(down).fold(f64::NEG_INFINITY, f64::max))
 }
 
 /// The beams that a block can touch and that lie level with the one it stands on at the start: it may slide on to them.

@@ -1,4 +1,4 @@
-//! Blocks that stand on each other and rock as one, or did before they came to rest: on the base of the lowest, with the critical angle of all of them together.
+//! Blocks that stand on each other and rock as one, or did before they stood still or trembled: on the base of the lowest, with the critical angle of all of them together.
 
 use super::{BodyVerdict, Fate, Fates, ROCKED, SLID, Seen, Watch, Watched, Way};
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use teeter_integrator::State;
 use teeter_scenario::scene::{Scene, SupportingBody};
 use teeter_scenario::simulation::Layout;
 
-/// Blocks rock as one if the joints between them never opened by more than this part of the angle to which they turned; of those that came to rest not
+/// Blocks rock as one if the joints between them never opened by more than this part of the angle to which they turned; of those that stand by now not
 /// when they were turned the farthest.
 const AS_ONE: f64 = 0.02;
 
@@ -259,24 +259,40 @@ fn pull(watched: &[Watched], layout: &Layout, state: &State, group: &[usize], wa
     2.0 * watched[group[0]].gravity * moment[0].hypot(moment[1]) / inertia
 }
 
-/// Says of blocks that overturned as one with which they did: the lowest of them.
-fn find_overturned(places: &[Option<usize>], seen: &[Seen], layout: &Layout, verdict: &mut [BodyVerdict]) {
-    let with = |number: usize, verdict: &[BodyVerdict]| {
-        let of = &verdict[places[number]?];
-        let root = seen[number].column.filter(|column| column.beyond.is_some())?.root;
-        (of.what == Fate::Overturned).then_some(root)
-    };
-    let roots: Vec<Option<usize>> = (0..seen.len()).map(|number| with(number, verdict)).collect();
-    for (number, root) in roots.iter().enumerate() {
-        let Some(root) = root else { continue };
-        let is_whole = roots[*root] == Some(*root) && roots.iter().filter(|of| **of == Some(*root)).count() > 1;
-        if let Some(of) = places[number].filter(|_| is_whole) {
-            verdict[of].overturned_with = Some(layout.blocks[*root].name.clone());
+/// Says of blocks that overturned as one with which they did: the lowest of them. Of a column whose lower blocks came back those above that
+/// still turn as one.
+fn find_overturned(
+    watched: &[Watched],
+    places: &[Option<usize>],
+    seen: &[Seen],
+    layout: &Layout,
+    verdict: &mut [BodyVerdict],
+) {
+    let mut columns: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (number, (of, seen)) in places.iter().zip(seen).enumerate() {
+        let overturned = of.is_some_and(|of| verdict[of].what == Fate::Overturned);
+        if let Some(column) = seen.column.filter(|column| overturned && column.beyond.is_some()) {
+            columns.entry(column.root).or_default().push(number);
+        }
+    }
+    for (root, column) in columns.into_iter().filter(|(_, column)| column.len() > 1) {
+        let is_on_another = |number: &usize| matches!(watched[*number].on, Some(SupportingBody::Block(below)) if column.contains(&below));
+        let lowest: Vec<usize> = match column.contains(&root) {
+            true => vec![root],
+            false => column.iter().copied().filter(|number| !is_on_another(number)).collect(),
+        };
+        let [lowest] = lowest[..] else { continue };
+        let apart = |number: &usize| (seen[*number].angle - seen[lowest].angle).abs();
+        if lowest != root && column.iter().any(|number| apart(number) > AS_ONE * seen[lowest].angle.abs()) {
+            continue;
+        }
+        for of in column.iter().filter_map(|number| places[*number]) {
+            verdict[of].overturned_with = Some(layout.blocks[lowest].name.clone());
         }
     }
 }
 
-/// Says of each block that rocks on another one without turning relative to it with which it does, and of the lowest how far all of them together are from
+/// Says of each block that rocks, or rocked before it stood, on another one without turning relative to it with which it does, and of the lowest how far all of them together are from
 /// overturning.
 pub(super) fn find(
     watched: &[Watched],
@@ -289,13 +305,11 @@ pub(super) fn find(
     // Verdicts are of the blocks that aren't driven, in their order.
     let mut told = 0..verdict.len();
     let places: Vec<Option<usize>> = watched.iter().map(|of| if of.driven { None } else { told.next() }).collect();
-    find_overturned(&places, seen, layout, verdict);
+    find_overturned(watched, &places, seen, layout, verdict);
     let rocks = |number: usize, verdict: &[BodyVerdict]| {
         places[number].filter(|of| match verdict[*of].what {
             Fate::Rocks => verdict[*of].tips.is_none(),
-            // What never moved didn't rock.
-            Fate::Rests => verdict[*of].t > Some(0.0),
-            _ => false,
+            _ => verdict[*of].stays(),
         })
     };
     // The angle to which a block of which φ/α is known has turned, rad.
@@ -306,16 +320,17 @@ pub(super) fn find(
         for _ in 0..watched.len() {
             let Some(SupportingBody::Block(below)) = watched[block].on else { break };
             let (Some(of), Some(foot)) = (rocks(block, verdict), rocks(below, verdict)) else { break };
-            if verdict[of].what != verdict[foot].what {
+            let rocks_on = verdict[of].what == Fate::Rocks;
+            if rocks_on != (verdict[foot].what == Fate::Rocks) {
                 break;
             }
             let [turned, beneath] =
                 [(block, of), (below, foot)].map(|(block, of)| turned(block, verdict[of].max_phi_over_alpha));
             let Some((turned, beneath)) = turned.zip(beneath) else { break };
-            let opened = match verdict[of].what {
+            let opened = match rocks_on {
                 // While the last small swings die out the joints open one by one: its largest swing tells how it rocked.
-                Fate::Rests => seen[block].joint.max((turned - beneath).abs()),
-                _ => seen[block].turned[0].max(seen[block].turned[1]),
+                false => seen[block].joint.max((turned - beneath).abs()),
+                true => seen[block].turned[0].max(seen[block].turned[1]),
             };
             if watched[below].driven || opened > AS_ONE * turned {
                 break;
@@ -341,8 +356,8 @@ pub(super) fn find(
             let parts = seen[root].turned.into_iter().zip(alpha).filter(|(_, alpha)| *alpha > 0.0);
             parts.fold(0.0, |most: f64, (turned, alpha)| most.max(turned / alpha))
         });
-        // What came to rest rocked if the column as a whole did; drums that are much wider than it is hardly turned.
-        if verdict[base].what == Fate::Rests && column.is_none_or(|part| part < ROCKED) {
+        // What stands by now rocked if the column as a whole did; drums that are much wider than it is hardly turned.
+        if verdict[base].what != Fate::Rocks && column.is_none_or(|part| part < ROCKED) {
             continue;
         }
         for number in group.iter().filter(|number| **number != root) {
@@ -445,6 +460,23 @@ mod tests {
         // Of what has no base nothing is told to have slid, here as elsewhere.
         watch.blocks[2].feet = None;
         assert!(keeps_its_place(&watch.blocks[2], &of));
+    }
+
+    /// All three passed their point of no return together, and the lowest came back from it.
+    #[test]
+    fn what_goes_on_above_a_block_that_came_back_overturns_as_one() {
+        let (scene, layout, mut state, mut fates) = stack();
+        for (turned, with) in [([0.4, 0.4], Some("b-2")), ([0.4, 0.5], None)] {
+            for (number, angle) in [1, 2].into_iter().zip(turned) {
+                let beyond = Some(Beyond { since: 0.0, way: Way::Left, pull: 1.0 });
+                let column = Column { root: 0, tops: [-0.2, 0.2], ahead: 0.0, angle, beyond };
+                (fates.blocks[number].column, fates.blocks[number].angle) = (Some(column), angle);
+            }
+            state.t = 1.0;
+            let verdict = fates.verdict(&scene, &layout, &state, &[]);
+            let found: Vec<_> = verdict.iter().map(|of| of.overturned_with.as_deref()).collect();
+            assert_eq!(found, [None, with, with]);
+        }
     }
 
     /// The weight of a part of a stack, one block after the other, is that of all of them at once.

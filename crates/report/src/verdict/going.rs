@@ -1,7 +1,7 @@
 //! How a block moves that does so at the end of a run and has no other fate: it bounces, rolls, slides or falls (`docs/verdict.md`).
 
 use super::standing::SETTLED;
-use super::{BEGAN_TO_TIP, FLAT, Fates, ROLLED, Seen, Watch, Watched};
+use super::{BEGAN_TO_TIP, FLAT, Fates, Seen, Watch, Watched};
 use serde::{Deserialize, Serialize};
 use teeter_integrator::{State, StepReport};
 use teeter_scenario::scene::SupportingBody;
@@ -180,28 +180,6 @@ impl Fates {
     }
 }
 
-impl Fates {
-    /// Takes in how far round blocks rolled in a step, after what pressed on them.
-    pub(super) fn roll(&mut self, watch: &Watch, layout: &Layout, state: &State) {
-        for (number, (seen, watched)) in self.blocks.iter_mut().zip(&watch.blocks).enumerate() {
-            let touches = || seen.touched.last == Some(state.t);
-            if watched.is_round && touches() && rolls(watched, watched.velocity(layout, number, state)) {
-                // It turns counter-clockwise as it goes to the left.
-                let (by, least) = (-watched.reach * seen.turn, ROLLED * watched.reach);
-                seen.rolls.go(by, state.t, least, FLAT * watched.still_time * watched.still_speed);
-            }
-        }
-    }
-}
-
-/// Whether a round block with this velocity and spin relative to what it touches rolls: the point that touches moves at less than half the centre's
-/// speed. What turns backwards, or on the spot, slides. On walls either sense may be right.
-fn rolls(watched: &Watched, [vx, vy, spin]: [f64; 3]) -> bool {
-    let speed = vx.hypot(vy);
-    let along = if vx.abs() > vy.abs() { vx.signum() } else { -spin.signum() };
-    (speed * along + watched.reach * spin).abs() <= 0.5 * speed
-}
-
 impl Touched {
     /// Whether it ever touched something.
     pub(super) fn any(&self) -> bool {
@@ -223,7 +201,7 @@ impl Touched {
 impl Seen {
     /// How it moves; `None` of one that does so in no way that has a word, such as a block that just began to slide.
     pub(super) fn going(&self, watched: &Watched, layout: &Layout, number: usize, state: &State) -> Option<Going> {
-        let [vx, vy, spin] = watched.velocity(layout, number, state);
+        let [_, vy, _] = watched.velocity(layout, number, state);
         let (t, Touched { last, flown, .. }) = (state.t, self.touched);
         let least = RISES * watched.reach;
         let landed = self.touched.landed.filter(|_| self.touched.rose >= least);
@@ -255,10 +233,12 @@ impl Seen {
         if landed.is_some_and(|landed| t - landed <= (least * watched.still_time).min(AGAIN * flown)) {
             return Some(Going::Bounces);
         }
-        if !watched.is_round {
-            return None;
-        }
-        Some(if rolls(watched, [vx, vy, spin]) { Going::Rolls } else { Going::Slides })
+        watched.is_round.then(|| match () {
+            // What carries it takes it along.
+            () if !self.goes_along(watched, t) => Going::Trembles,
+            () if self.rolling.rolls => Going::Rolls,
+            () => Going::Slides,
+        })
     }
 
     /// Whether it is in the air after a landing, or was so a short time ago, higher than what rocks hops. After a single hop it rocks as soon as it
@@ -300,7 +280,9 @@ impl Seen {
     /// Whether it has only moved with what carries it: neither slid by a tenth of `least` (m), nor turned against it, nor flown.
     pub(super) fn never_moved(&self, watched: &Watched, least: f64) -> bool {
         let is_placed = watched.on.is_some() && self.touched.last.is_some() && self.touched.landed.is_none();
-        is_placed && self.slides.most() < 0.1 * least && self.part.is_some_and(|part| part < BEGAN_TO_TIP)
+        let is_upright = |part| part < BEGAN_TO_TIP;
+        let is_there = || watched.is_round && self.rolling.is_there(watched);
+        is_placed && self.slides.most() < 0.1 * least && self.part.map_or_else(is_there, is_upright)
     }
 
     /// Whether it has never moved on the block that it stands on: neither slid by a tenth of `least` (m), nor turned against it by what can be seen.

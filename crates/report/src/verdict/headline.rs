@@ -1,10 +1,13 @@
 //! What became of a scene, in a sentence.
 
+mod rolled;
+
 use super::carrier::{Driven, driven_below};
 use super::{BodyVerdict, Fate, Going, Side, many};
 use crate::all_digits::{all_digits, with_all_digits};
 use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
+use rolled::{ended_at, so_far, went};
 use teeter_integrator::State;
 use teeter_scenario::readable::{like, shortest, with_unit};
 use teeter_scenario::scene::{BlockScene, Scene};
@@ -197,13 +200,16 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     // What tumbles slides meanwhile, and after that.
     let then = if of.what == Fate::Slid && of.rests_from.is_some() { "" } else { "then " };
     let tumbled = of.tumbled.map(|turn| format!("tumbled by {}, {then}", turns(turn.abs())));
-    let rolled = of
-        .rolled
-        .filter(|_| of.going != Some(Going::Rolls))
-        .map(|ways| format!("rolled{}, {then}", rolled(scene, of, ways)));
+    let rolled = of.rolled.and_then(|ways| went(scene, of, &ways)).map(|went| match of.going {
+        Some(Going::Rolls | Going::Slides) => format!("{went}, "),
+        _ => format!("{went}, {then}"),
+    });
     let moving = if of.is_carried { moving_base(scene, &[of]) } else { "" };
     // Where nothing is said, it rests on its base.
     let side = side_below(of).filter(|_| of.lies_on != Some(Side::Base)).unwrap_or_default();
+    let lies = of.other_side().map(|side| format!(" on its {}", side.word()));
+    let (aside, between) =
+        lies.as_ref().map_or_else(Default::default, |lies| (format!(",{lies}"), format!(",{lies},")));
     let then_rested = of.rests_from.filter(|_| of.what != Fate::Rests).map_or_else(String::new, |t| {
         format!(", came to rest{}{moving} at {}", side_below(of).unwrap_or_default(), time(t))
     });
@@ -238,10 +244,16 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         Fate::Fell => format!("fell from its place{at}{then_rested}"),
         Fate::Rests | Fate::Moves if of.stood_on.is_some() => {
             let since = of.unmoved_from.map_or_else(String::new, |t| format!(", at rest from {}", time(t)));
-            format!("stood on `{}` throughout{since}", of.stood_on.as_deref().unwrap_or_default())
+            let is_round = scene.blocks.iter().any(|block| block.name == of.body && block.base() == 0.0);
+            let how = if is_round { "lay" } else { "stood" };
+            format!("{how} on `{}` throughout{since}", of.stood_on.as_deref().unwrap_or_default())
         }
         Fate::Rests if of.turns_with.is_some() => {
             format!("rocked as one with `{}`, came to rest{at}", of.turns_with.as_deref().unwrap_or_default())
+        }
+        Fate::Moves if of.turns_with.is_some() => {
+            let now = of.going.map_or_else(|| still(scene, of, end), |going| format!(", is {}{on}", going.word()));
+            format!("rocked as one with `{}`{now}", of.turns_with.as_deref().unwrap_or_default())
         }
         Fate::Rests if of.rests_throughout() => {
             let how = if side.is_empty() { "stood" } else { "lay" };
@@ -256,7 +268,8 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
                 Some(reached) => format!("slid to and fro, {},", up_to(scene, of, reached)),
                 None => slid,
             };
-            beside(format!("{slid} and stands{}", on_what_moves(&[of])))
+            let on = on_what_moves(&[of]);
+            beside(lies.map_or_else(|| format!("{slid} and stands{on}"), |lies| format!("{slid} and lies{lies}{on}")))
         }
         Fate::Slid if of.to_and_fro.is_some() => {
             let on = if of.is_driven { moving_base(scene, &[of]) } else { "" };
@@ -267,7 +280,7 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         }
         // Whether it slides or sticks in the last instant says nothing.
         Fate::Slid if of.is_driven => beside(format!("{slid}{}", moving_base(scene, &[of]))),
-        Fate::Slid if of.still_from.is_some() => beside(format!("{slid}{}", still(scene, of, end))),
+        Fate::Slid if of.still_from.is_some() => beside(format!("{slid}{between}{}", still(scene, of, end))),
         Fate::Slid => beside(format!("slides on, {slid} so far")),
         Fate::Rocks if of.turns_with.is_some() => {
             let how = if of.in_column { "rocks" } else { "turns" };
@@ -286,13 +299,13 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             let peak =
                 of.last_peak.map_or_else(String::new, |peak| format!(", last peak {}{against}{at}", angle(peak)));
             let drift = if of.has_slid { format!(", {slid}") } else { String::new() };
-            beside(format!("rocks on{peak}{drift}"))
+            beside(format!("rocks on{aside}{peak}{drift}"))
         }
         Fate::Moves if of.still_from == Some(of.start) && scene.settles_at() < end => {
             beside("has been still, too short a run to tell whether it rests".to_owned())
         }
         Fate::Moves if of.still_from.is_some() && of.going.is_none() => {
-            beside(format!("moved{}", still(scene, of, end)))
+            beside(format!("moved{between}{}", still(scene, of, end)))
         }
         Fate::Moves => match of.going {
             // What bounces doesn't slide, but may be elsewhere.
@@ -301,36 +314,21 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
                 beside(format!("is {}{on}, {place}", Going::Bounces.word()))
             }
             Some(going) => {
-                let so_far = of.rolled.filter(|_| going == Going::Rolls);
-                let so_far =
-                    so_far.map_or_else(String::new, |ways| format!("{} so far", self::rolled(scene, of, ways)));
-                // How goes before how far.
-                let so_far = if so_far.starts_with(TO_AND_FRO) { so_far } else { so_far.replacen(' ', ", ", 1) };
+                let so_far = of.rolled.map_or_else(String::new, |ways| so_far(scene, of, &ways, going));
                 let rocked = of.stopped_rocking;
                 let rocked = rocked.map_or_else(String::new, |t| format!("stopped rocking at {}, ", time(t)));
-                beside(format!("{rocked}is {}{on}{so_far}", going.word()))
+                beside(format!("{rocked}is {}{aside}{on}{so_far}", going.word()))
             }
             None => beside("still moves".to_owned()),
         },
     };
-    format!("{}{fate}{}", tumbled.or(rolled).unwrap_or_default(), hopped(scene, of))
+    let ended = of.rolled.filter(|_| matches!(of.what, Fate::Rests | Fate::Moves));
+    let ended = ended.map_or_else(String::new, |ways| ended_at(scene, of, &ways));
+    format!("{}{fate}{}{ended}", tumbled.or(rolled).unwrap_or_default(), hopped(scene, of))
 }
 
 /// What goes before how far something went that turned round.
 const TO_AND_FRO: &str = " to and fro";
-
-/// How far a round block rolled, in words after "rolled", and in all (m), where that is more.
-fn rolled(scene: &Scene, of: &BodyVerdict, [at, in_all]: [f64; 2]) -> String {
-    let radius = scene.blocks.iter().find(|block| block.name == of.body).map_or(0.0, BlockScene::radius);
-    let turn = if radius > 0.0 { at.abs() / radius } else { 0.0 };
-    let (way, far) = (direction(scene, at).way, with_unit(at.abs(), "m"));
-    let by = format!("by {far} {way} ({})", turns(turn));
-    if in_all <= MORE * at.abs() {
-        return format!(" {by}");
-    }
-    let by = if turn < super::ROLLED { "and back to its start".to_owned() } else { by };
-    format!("{TO_AND_FRO}, {} in all, {by}", with_unit(in_all, "m"))
-}
 
 /// How a block slid to both sides of its start (m) and where it is by that, in words.
 fn to_both_sides(scene: &Scene, of: &BodyVerdict, reached: [f64; 2], slid: f64) -> String {
@@ -408,6 +406,11 @@ fn direction(scene: &Scene, slid: f64) -> Direction {
     Direction { way, side }
 }
 
+/// To which side a way along what carries a block (m) is, in words, if it is so long that it is told.
+pub(super) fn way(scene: &Scene, of: &BodyVerdict, at: f64) -> Option<&'static str> {
+    is_told(scene, of, at).then(|| direction(scene, at).way)
+}
+
 /// That a block is still at the end, in words, of one that is not known to rest: while something shakes it, it may move again.
 fn still(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     if scene.settles_at() >= end {
@@ -473,7 +476,10 @@ fn beside_slid(scene: &Scene, of: &BodyVerdict) -> String {
 /// Whether a way along what carries a block, m, is so long that it is told.
 fn is_told(scene: &Scene, of: &BodyVerdict, way: f64) -> bool {
     let block = scene.blocks.iter().find(|block| block.name == of.body);
-    block.is_some_and(|block| way.abs() >= super::SLID * block.base())
+    block.is_some_and(|block| match block.base() {
+        base if base > 0.0 => way.abs() >= super::SLID * base,
+        _ => way.abs() >= super::ROLLED * block.radius(),
+    })
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::lying::Side;
 use super::watch::Watched;
-use super::{BEGAN_TO_TIP, BodyVerdict, FLAT, Fate, Fates, Going, ROCKED, ROLLED, SLID, Seen, TUMBLED, Way};
+use super::{BEGAN_TO_TIP, BodyVerdict, FLAT, Fate, Fates, Going, ROCKED, SLID, Seen, TUMBLED, Way};
 use teeter_integrator::{RockingMonitor, State};
 use teeter_scenario::scene::{BlockScene, Placement};
 use teeter_scenario::simulation::Layout;
@@ -91,8 +91,8 @@ impl Seen {
         };
         let side_on = |slope: f64| Side::below(block, watched.outline.as_ref()?, self.angle - slope);
         // What stands on a block that leans lies flat on that.
-        let lies_on = rests
-            .and_then(|_| side_on(watched.slope(&state.q)).or_else(|| side_on(watched.turn(layout, number, state))));
+        let side = || side_on(watched.slope(&state.q)).or_else(|| side_on(watched.turn(layout, number, state)));
+        let lies_on = rests.and_then(|_| side());
         let leans = rests.is_some() && lies_on.is_none() && watched.outline.is_some();
         let turned = self.angle - self.start[2];
         // Where pieces of a profile meet, a base goes a little less far than its feet. What comes down turns over as it does.
@@ -140,6 +140,11 @@ impl Seen {
         let stands = stands || (what == Fate::Moves && has_stood && for_an_instant);
         let trembles = || (stands && turning.is_none()).then_some(Going::Trembles);
         let going = going.or_else(trembles);
+        let rocks_on = || {
+            Side::below(block, watched.outline.as_ref()?, self.stance(watched)?.flat).filter(|_| what == Fate::Rocks)
+        };
+        let stays = stopped || self.still.is_some() || going.is_some_and(Going::stays);
+        let stands_on = if stays { side() } else { rocks_on() }.filter(|_| rests.is_none());
         // What rests on its beam from the start may have moved with it; where supports move it is told to stand on these.
         let moved = rests != Some(start) || (self.unmoved != Some(start) && watched.driven_until == 0.0);
         let is_here = matches!(what, Fate::Rests | Fate::Moves) && moved && !began_in_flight;
@@ -161,18 +166,19 @@ impl Seen {
             rests_from: rests,
             leans_at: leans.then_some(tilt),
             lies_on,
+            stands_on,
             slid: slid.map(|[at, _]| at),
             slid_in_all: slid.map(|[_, in_all]| in_all),
             farthest: slides.and_then(|slides| slides.farthest(least)),
+            slid_to: None,
+            farthest_to: None,
             displaced,
             has_slid,
             elsewhere: if began_in_flight { flown } else { displaced }
                 .filter(|at| slides.is_some_and(|slides| (at - slides.at()).abs() >= apart)),
             flown: flown.filter(|at| at.abs() >= if began_in_flight { watched.base() } else { least }),
             began_in_flight,
-            rolled: Some(&self.rolls)
-                .filter(|rolls| watched.is_round && rolls.most() >= ROLLED * watched.reach)
-                .map(|rolls| [rolls.at(), rolls.in_all()]),
+            rolled: self.rolling.told(watched, watched.centre(layout, number, state) - self.released, turned),
             to_and_fro: to_and_fro.map(|slides| slides.reached()),
             is_driven: state.t < watched.driven_until,
             stopped,

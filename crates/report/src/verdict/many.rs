@@ -1,18 +1,28 @@
 //! What became of more than a few blocks, in a sentence.
 
 use super::headline::{self, PAST_EDGE, moving_base, on_what_moves, part, time};
-use super::{BodyVerdict, Fate, Going, Side};
+use super::{BodyVerdict, Fate, Going};
 use teeter_scenario::scene::Scene;
+
+/// How many of these blocks slid before they came to rest, and how many lie, stand or rock on other sides than their bases, in brackets.
+fn how_they_lie(blocks: &[&BodyVerdict]) -> String {
+    let slid = blocks.iter().filter(|of| of.what == Fate::Slid && of.rests_from.is_some()).count();
+    let over = blocks.iter().filter(|of| of.other_side().is_some()).count();
+    let told =
+        [(slid, "after sliding"), (over, "on another side than the base")].into_iter().filter(|(count, _)| *count > 0);
+    let told: Vec<String> = told.map(|(count, how)| format!("{count} {how}")).collect();
+    if told.is_empty() { String::new() } else { format!(" ({})", told.join(", ")) }
+}
 
 /// What became of many blocks up to the time `end` (s).
 pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
-    // What stood on a beam, or rocked as a column before it came to rest, is told as that.
+    // What stood on a beam, or rocked as a column before it stood, is told as that.
     let bases: Vec<&BodyVerdict> =
         verdict.iter().filter(|base| verdict.iter().any(|of| of.turns_with.as_ref() == Some(&base.body))).collect();
     let is_on =
         |of: &BodyVerdict, base: &BodyVerdict| of.body == base.body || of.turns_with.as_ref() == Some(&base.body);
     let in_group = |of: &BodyVerdict| bases.iter().any(|base| is_on(of, base));
-    let usual = || verdict.iter().filter(|of| of.stood_on.is_none() && !(of.what == Fate::Rests && in_group(of)));
+    let usual = || verdict.iter().filter(|of| of.stood_on.is_none() && !(of.what != Fate::Rocks && in_group(of)));
     let of = |fates: &[Fate]| usual().filter(|of| fates.contains(&of.what)).collect::<Vec<_>>();
     let by_time =
         |a: &&&BodyVerdict, b: &&&BodyVerdict| a.t.unwrap_or(f64::INFINITY).total_cmp(&b.t.unwrap_or(f64::INFINITY));
@@ -81,11 +91,16 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
     tell(&left, "left their beam", "first");
     tell(&tipped, "tipped over the end of their beam", "first");
     tell(&of(&[Fate::Sunk]), "fell below everything", "first");
-    for base in bases.iter().filter(|base| base.what == Fate::Rests) {
+    for base in bases.iter().filter(|base| base.what != Fate::Rocks) {
         let column: Vec<_> = verdict.iter().filter(|of| is_on(of, base)).collect();
         let last = column.iter().filter_map(|of| of.rests_from).fold(0.0, f64::max);
-        let what = format!("rocked as one column on the base of `{}`, came to rest, last at {}", base.body, time(last));
-        tell(&column, &what, "");
+        let trembles = |of: &&BodyVerdict| matches!(of.going, Some(Going::Trembles | Going::Vibrates));
+        let then = match () {
+            () if column.iter().all(|of| of.rests_from.is_some()) => format!(", came to rest, last at {}", time(last)),
+            () if column.iter().any(trembles) => " and still tremble".to_owned(),
+            () => " and stand still at the end".to_owned(),
+        };
+        tell(&column, &format!("rocked as one column on the base of `{}`{then}", base.body), "");
     }
     let stood: Vec<_> = verdict.iter().filter(|of| of.stood_on.is_some()).collect();
     tell(&stood, if stood.len() == 1 { "stood on its beam throughout" } else { "stood on their beams throughout" }, "");
@@ -94,14 +109,7 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
     // What never moved didn't come to rest.
     for resting in [moved, stood] {
         if let Some(last) = resting.iter().filter_map(|of| of.rests_from).reduce(f64::max) {
-            // Of rectangles: other shapes are as often drawn on any of their sides.
-            let is_over = |of: &&&BodyVerdict| matches!(of.lies_on, Some(Side::Left | Side::Right | Side::Top));
-            let slid = (resting.iter().filter(|of| of.what == Fate::Slid).count(), "after sliding");
-            let over = (resting.iter().filter(is_over).count(), "on another side than the base");
-            let told =
-                [slid, over].into_iter().filter(|(count, _)| *count > 0).map(|(count, how)| format!("{count} {how}"));
-            let told = told.collect::<Vec<_>>().join(", ");
-            let how = if told.is_empty() { told } else { format!(" ({told})") };
+            let how = how_they_lie(&resting);
             let what = if resting.iter().all(|of| of.rests_throughout()) {
                 match moving_base(scene, &resting) {
                     "" => "stood still throughout".to_owned(),
@@ -132,19 +140,21 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
         let how = if base.column.is_some() { "rock on as one column" } else { "turn as one" };
         tell(&column, &format!("{how} on the base of `{}`", base.body), "");
     }
-    tell(&rocking, if rocking.len() == 1 { "rocks on" } else { "rock on" }, "");
+    let lie = how_they_lie(&rocking);
+    tell(&rocking, &format!("{}{lie}", if rocking.len() == 1 { "rocks on" } else { "rock on" }), "");
     for going in Going::ALL {
         let these: Vec<_> = usual().filter(|of| of.going == Some(going)).collect();
+        let lie = how_they_lie(&these);
         let what = match these.len() {
-            1 => format!("is {}", going.word()),
-            _ => format!("are {}", going.word_of_many()),
+            1 => format!("is {}{lie}", going.word()),
+            _ => format!("are {}{lie}", going.word_of_many()),
         };
         tell(&these, &what, "");
     }
     let sliding: Vec<_> = of(&[Fate::Slid]).into_iter().filter(|of| of.rests_from.is_none()).collect();
     let (stopped, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(|of| of.stopped);
     let stand = if stopped.len() == 1 { "stands" } else { "stand" };
-    tell(&stopped, &format!("slid, and {stand}{}", on_what_moves(&stopped)), "");
+    tell(&stopped, &format!("slid, and {stand}{}{}", on_what_moves(&stopped), how_they_lie(&stopped)), "");
     let shaken = |of: &&BodyVerdict| of.to_and_fro.is_some() && (of.is_driven || of.still_from.is_none());
     let (to_and_fro, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(shaken);
     tell(&to_and_fro, if to_and_fro.len() == 1 { "slides to and fro" } else { "slide to and fro" }, "");
@@ -156,7 +166,8 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
         of(&[Fate::Moves]).into_iter().filter(|of| of.going.is_none() && of.tips.is_none()).collect();
     let (at_end, moving): (Vec<_>, Vec<_>) = of_moves.into_iter().partition(|of| of.still_from.is_some());
     let still: Vec<_> = still.into_iter().chain(at_end).collect();
-    tell(&still, if still.len() == 1 { "stands still at the end" } else { "stand still at the end" }, "");
+    let stand = if still.len() == 1 { "stands" } else { "stand" };
+    tell(&still, &format!("{stand} still at the end{}", how_they_lie(&still)), "");
     tell(&moving, if moving.len() == 1 { "still moves" } else { "still move" }, "");
     let others = || {
         let stayed = verdict.iter().filter(|of| !matches!(of.what, Fate::Fell | Fate::Overturned));

@@ -9,7 +9,7 @@ use teeter_integrator::StepReport;
 /// What has slid on for this many times its longest way to or fro goes its own way.
 const USUAL: f64 = 2.0;
 
-/// The way that a block has slid, or a round one rolled, from the start of the run, to the right positive.
+/// The way that a block has slid, or a round one rolled or skidded, from the start of the run, to the right positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Slides {
     /// How far it is by all of its slides, m.
@@ -120,6 +120,7 @@ impl Fates {
                 let [held, slid] = std::mem::take(&mut seen.sliding);
                 let creeps = FLAT * watched.still_time * watched.still_speed;
                 seen.slides.go(slid / held, part.end, SLID * watched.base(), creeps);
+                *seen.slipped.get_or_insert(0.0) += slid / held;
             }
         }
     }

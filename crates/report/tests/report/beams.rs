@@ -93,9 +93,9 @@ fn a_tile_names_what_a_block_slid_on_where_that_is_several() {
     };
     let both = run("slides-on-two", &text("0 m")).html;
     assert!(
-        both.contains("<dt>Slid by, on ground and plate</dt>")
-            || both.contains("<dt>Slid by, on plate and ground</dt>")
+        both.contains("<dt>Slid to the right by, on ground and plate</dt>")
+            || both.contains("<dt>Slid to the right by, on plate and ground</dt>")
     );
     let one = run("slides-on-one", &text("-1 m").replace("26 mm", "25 mm").replace("2 m/s", "1 m/s")).html;
-    assert!(one.contains("<dt>Slid by</dt>"));
+    assert!(one.contains("<dt>Slid to the right by</dt>"));
 }

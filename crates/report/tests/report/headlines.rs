@@ -34,7 +34,7 @@ fn why_a_block_on_a_beam_has_no_half_cycles_is_told() {
     assert!(!cycles.is_empty() && cycles.iter().all(|cycle| cycle.body == "tall"));
     let passed = beside.summary.crossings.iter().filter(|crossing| crossing.body == "wide").count();
     assert!(passed > 1, "{passed}");
-    let told = format!("against the beam’s undeformed axis: wide passed φ = 0 {passed} times.");
+    let told = format!("against the beam’s undeformed axis: wide passed {passed} times through φ = 0.");
     assert!(beside.html.contains(&told), "{told}");
 }
 
@@ -567,12 +567,13 @@ fn a_penetration_that_stays_is_told_to() {
     let (lies, state) = run_from("lies-deep", &text("1 s", "80 mm"), None);
     let depth = 0.05 - state.q[1];
     assert!(depth > 1e-8 && lies.summary.max_penetration >= depth, "{depth}");
-    let told = lies.summary.penetration_at_end().unwrap();
+    let digits = |x: f64| teeter_report::with_digits(x, "m", 2);
+    let told = lies.summary.penetration_at_end(digits).unwrap();
     assert!(told.ends_with("at the end"), "{told}");
     assert!(lies.html.contains(&format!("<dt>Deepest penetration, {told}</dt>")));
     let (flies, state) = run_from("bounced-out", &text("110 ms", "85 mm"), None);
     assert!(state.q[1] > 0.05 && flies.summary.max_penetration > 1e-5);
-    assert_eq!(flies.summary.penetration_at_end(), None);
+    assert_eq!(flies.summary.penetration_at_end(digits), None);
 }
 
 /// Two beams and no block: the second is bent by a load, the first isn't; by their elements and by modes, of supports that move, too.

@@ -4,6 +4,7 @@
 #[cfg(feature = "animation")]
 mod animation;
 mod beams;
+mod carriers;
 mod energy;
 mod extremes;
 mod headlines;
@@ -16,7 +17,9 @@ mod page;
 mod palette;
 mod plots;
 mod records;
+mod rolling;
 mod sections;
+mod sides;
 mod sizes;
 mod slopes;
 mod swings;

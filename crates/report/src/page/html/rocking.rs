@@ -19,7 +19,7 @@ pub(super) fn decimals(values: impl Iterator<Item = f64>, digits: i32) -> usize 
 
 /// Of which blocks the table has no half cycles, and why.
 fn not_listed(left_out: &[LeftOutCycles]) -> String {
-    let passed = |of: &LeftOutCycles| format!("{} passed φ = 0 {}", escaped(&of.body), times(of.count));
+    let passed = |of: &LeftOutCycles| format!("{} passed {} through φ = 0", escaped(&of.body), times(of.count));
     let few = left_out.iter().filter_map(|of| match of.why {
         WhyLeftOut::FewLandings(hits) => {
             let near = if hits == 0 { "none".to_owned() } else { hits.to_string() };

@@ -100,12 +100,13 @@ fn sliding<'s>(summary: &Summary, slid_on: impl Fn(&str) -> Vec<&'s str>) -> Vec
     let slid = slid.filter(|_| of.to_and_fro.is_none() || farthest.is_none());
     let in_all = of.slid_in_all.filter(|_| of.to_and_fro.is_some());
     let whose = if summary.verdict.len() > 1 { format!(" ({})", of.body) } else { String::new() };
+    let way = |way: Option<&str>| way.map_or_else(String::new, |way| format!(" {way}"));
     // The sum over all that it slid on.
     let on = slid_on(&of.body);
     let on = if on.len() > 1 { format!(", on {}", on.join(" and ")) } else { String::new() };
     let tiles = [
-        tile("slid", format!("Slid by{on}{whose}"), slid, "m"),
-        tile("farthest", format!("Slid at most{whose}"), farthest, "m"),
+        tile("slid", format!("Slid{} by{on}{whose}", way(of.slid_to)), slid, "m"),
+        tile("farthest", format!("Slid{} at most{whose}", way(of.farthest_to)), farthest, "m"),
         tile("slid_in_all", format!("Slid in all{whose}"), in_all, "m"),
         tile("speed", format!("Speed at the end{whose}"), of.speed, "m/s"),
     ];
@@ -177,7 +178,8 @@ pub(super) fn tiles<'s>(values: &Numbers, summary: &Summary, slid_on: impl Fn(&s
         [_] => "Overturned at".to_owned(),
         _ => "First overturned at".to_owned(),
     };
-    let at_end = summary.penetration_at_end().map_or_else(String::new, |at_end| format!(", {at_end}"));
+    let depth = |x: f64| with_prefix_of(x, 2, "m");
+    let at_end = summary.penetration_at_end(depth).map_or_else(String::new, |at_end| format!(", {at_end}"));
     let penetration = format!("Deepest penetration{at_end}");
     // Without contacts their numbers would all be 0.
     let touches = !summary.model.contacts.is_empty() || summary.contact.max_contacts > 0;
@@ -208,7 +210,7 @@ pub(super) fn tiles<'s>(values: &Numbers, summary: &Summary, slid_on: impl Fn(&s
             "impact_count" => (impacts.as_str(), Some(summary.impact_count.to_string())),
             "horizon" => ("Predictable up to", seconds(summary.horizon)),
             // As the terminal has it.
-            "max_penetration" => (penetration.as_str(), Some(with_prefix_of(summary.told_penetration(), 2, "m"))),
+            "max_penetration" => (penetration.as_str(), Some(depth(summary.told_penetration()))),
             "energy.largest_residual" => ("Energy residual", Some(scientific(summary.energy.largest_residual))),
             "contact.unconverged_steps" => ("Steps not solved", Some(summary.contact.unconverged_steps.to_string())),
             "contact.max_residual" => ("Contact residual", Some(scientific(summary.contact.max_residual))),
@@ -219,7 +221,8 @@ pub(super) fn tiles<'s>(values: &Numbers, summary: &Summary, slid_on: impl Fn(&s
         let path =
             if path == "max_phi_over_alpha" { largest.as_ref().map_or(path, |of| of.path.as_str()) } else { path };
         let bad = path == "contact.unconverged_steps" && summary.contact.unconverged_steps > 0;
-        let label = escaped(label);
+        // It may hold a power of ten, but no name.
+        let label = if path == "max_penetration" { label.to_owned() } else { escaped(label) };
         let _ = writeln!(
             html,
             "<div class=\"tile{}{}\"><dt>{label}</dt><dd data-summary=\"{path}\" data-value=\"{}\">{}</dd></div>",

@@ -1,0 +1,67 @@
+//! Round blocks: what they roll and what they skid, and what they do on something that moves.
+
+use crate::page::run;
+
+fn wheel(name: &str, end: &str, velocity: f64, spin: f64) -> (String, [f64; 2]) {
+    let text = format!(
+        "[time]\nend = '{end}'\nstep = '0.5 ms'\n[ground]\n[block.wheel]\ndensity = '1100 kg/m^3'\nradius = '20 cm'\ndepth = '5 cm'\n\
+         on = 'ground'\nat = '0 m'\nvelocity = ['{velocity} m/s', '0 m/s']\nspin = '{spin} rad/s'\n[contact.c]\nbetween = ['wheel', 'ground']\n\
+         friction = 0.3\n"
+    );
+    let ran = run(name, &text);
+    let rows = std::fs::read_to_string(ran.folder.join("trajectory.csv")).unwrap();
+    let last: Vec<f64> = rows.lines().last().unwrap().split(',').map(|field| field.parse().unwrap()).collect();
+    (ran.summary.headline, [last[1], last[3]])
+}
+
+/// It goes to the right while it skids, and rolls back: where it is and how far it has turned are those of the plots.
+#[test]
+fn what_skids_before_it_rolls_has_both_told() {
+    let (headline, [x, phi]) = wheel("spins-backwards", "3 s", 2.0, 30.0);
+    // Until the point that touches slips at a twentieth of the centre's speed.
+    let (slows, until) = (0.3 * 9.81, 8.1 / (3.05 * 0.3 * 9.81));
+    let skidded = 2.0 * until - 0.5 * slows * until * until;
+    let (by, rest) = headline.strip_prefix("`wheel` skidded by ").unwrap().split_once(" mm to the right, ").unwrap();
+    assert!((1e-3 * by.parse::<f64>().unwrap() / skidded - 1.0).abs() < 0.01, "{headline} {skidded}");
+    let (by, rest) = rest.strip_prefix("is still rolling, by ").unwrap().split_once(" m to the left (").unwrap();
+    assert!((by.parse::<f64>().unwrap() - (skidded - x)).abs() < 0.005, "{headline}");
+    let in_all = format!(
+        "so far; in all {:.1} mm left of its start, turned by {:.2} turns counter-clockwise",
+        -1e3 * x,
+        phi / std::f64::consts::TAU
+    );
+    assert!(rest.ends_with(&in_all), "{headline} {in_all}");
+}
+
+#[test]
+fn what_only_rolls_or_only_skids_has_one_way_told() {
+    let (rolls, _) = wheel("only-rolls", "1 s", 1.0, -5.0);
+    assert_eq!(rolls, "`wheel` is still rolling, by 1 m to the right (286°) so far");
+    let (skids, [x, phi]) = wheel("only-skids", "0.2 s", 2.0, 30.0);
+    let told = format!(
+        "`wheel` is still sliding, by {:.1} mm to the right so far; in all turned by {:.0}° counter-clockwise",
+        1e3 * x,
+        phi.to_degrees()
+    );
+    assert_eq!(skids, told);
+}
+
+/// The beam goes up and down by millimetres, which is no slide: nor is the chatter with which bounces on a beam end.
+#[test]
+fn what_a_beam_takes_up_and_down_does_not_slide() {
+    let text = |end: &str, ball: &str, load: &str| {
+        format!(
+            "[time]\nend = '{end}'\nstep = '50 us'\n[material.steel]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n[beam.bar]\n\
+             material = 'steel'\nspan = '80 cm'\nwidth = '5 cm'\nthickness = '5 mm'\nelements = 24\nsupports = ['pinned', 'pinned']\n\
+             damping_ratio = {{ mode = 1, ratio = 0.02 }}\nstart = 'static'\n{load}[block.ball]\nmaterial = 'steel'\nradius = '2 cm'\n\
+             depth = '3 cm'\n{ball}[contact.c]\nbetween = ['ball', 'bar']\nfriction = 0.3\n"
+        )
+    };
+    let load = "[signal.s]\nshape = 'harmonic'\nfrequency = '7 Hz'\n[load.f]\non = 'bar'\nat = '20 cm'\nforce = '15 N'\nsignal = 's'\n";
+    let laid = run("laid-on-a-shaken-beam", &text("0.5 s", "on = 'bar'\nat = '40 cm'\n", load)).summary;
+    assert_eq!(laid.verdict[0].rests_from, None);
+    assert!(laid.headline.starts_with("`ball` lay on `bar` throughout"), "{}", laid.headline);
+    let dropped = text("0.8 s", "position = ['40 cm', '5 cm']\n", "") + "restitution = 0.3\n";
+    let dropped = run("dropped-on-a-beam", &dropped).summary.headline;
+    assert!(dropped.starts_with("`ball` is still trembling where it stands, on a beam that moves"), "{dropped}");
+}
