@@ -72,8 +72,7 @@ pub struct Candidate<const D: usize> {
     pub id: ContactId,
     /// The law of the contact.
     pub law: LawId,
-    /// Where it acts on either body: the point, and its foot on the surface; or one place for both, so that friction and its reaction have
-    /// no couple of their own across the gap, as between two shapes that are free to turn.
+    /// The point, and the foot on the surface.
     pub sides: [Anchor<D>; 2],
     /// Normal and tangents, rows.
     pub frame: Frame<D>,

@@ -227,6 +227,12 @@ pub trait ContactDetector<const D: usize>: Send + Sync {
         let _ = (at, ids);
         pieces.clear();
     }
+    /// Moves the sides of a contact that was found in this configuration to one place for both bodies. They are its gap apart, so that
+    /// friction and its reaction are a couple, which no third body feels: where two bodies are wedged and press each other with any force,
+    /// it would move them. The default leaves the sides where they are, as is right where only one of the bodies can turn.
+    fn bring_together(&self, at: &dyn Geometry<D>, contact: &mut Candidate<D>) {
+        let _ = (at, contact);
+    }
     /// How far the first body of a contact is beyond the second one along a unit direction, m: negative
     /// where they overlap along it. Along the normal of a side of either, if that is within 8° of the
     /// direction and they are further apart along it. Of bodies of several parts those count that touch.

@@ -64,16 +64,14 @@ pub(crate) fn near_outline(feature: CornerOnSide, owner: &Outline<'_>, other: &O
         near = along_overlap(along, owner, other, &place, radii).unwrap_or(near);
     }
     let Nearest { foot, normal, distance, .. } = near;
-    let gap = distance - radii;
-    // At the owner's own point, so that a disc rolls by its radius; of two discs in the middle of what parts them or yields.
-    let share = if other.corners.len() == 1 { 0.5 } else { 0.0 };
-    let on_other = foot + normal * (other.radius + (1.0 - share) * gap);
+    let on_other = foot + normal * other.radius;
     let normal = other.frame.turned(&normal);
-    let on_owner = corner - owner.frame.unturned(&normal) * (owner.radius + share * gap);
+    let on_owner = corner - owner.frame.unturned(&normal) * owner.radius;
     let (points, normal) = match feature.owner {
         0 => ([on_owner, on_other], normal),
         _ => ([on_other, on_owner], -normal),
     };
+    let gap = distance - radii;
     gap.is_finite().then(|| Touch { feature: feature.number(), points, normal, gap, room: f64::INFINITY })
 }
 

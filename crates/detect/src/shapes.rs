@@ -460,6 +460,29 @@ impl ContactDetector<2> for ShapeDetector {
         pieces.extend(ids.iter().map(|id| self.piece(at, *id).unwrap_or(0)));
     }
 
+    /// To the corner, or to the owner's own rim, so that a disc rolls by its radius; of two discs in the middle of what parts them or yields.
+    fn bring_together(&self, at: &dyn Geometry<2>, contact: &mut Candidate<2>) {
+        if contact.gap == 0.0 {
+            return;
+        }
+        let Some((_, members)) = self.shapes_of(contact.id) else { return };
+        let feature = CornerOnSide::from_number(contact.id.point());
+        let Some([_, (beside, _)]) = self.parts_of(members, feature) else { return };
+        let is_disc = feature.round && self.shapes.local(beside).len() == 1;
+        let share = if is_disc { 0.5 } else { 0.0 };
+        // The normal points from the second body to the first.
+        let towards = if feature.owner == 0 { contact.gap } else { -contact.gap };
+        let across: Vector<2> = contact.frame.row(0).transpose() * towards;
+        let mut shift = |side: usize, by: f64| {
+            if by != 0.0 {
+                let side = &mut contact.sides[side];
+                side.point += BodyFrame::of(side.body, at).unturned(&across) * by;
+            }
+        };
+        shift(feature.owner, -share);
+        shift(1 - feature.owner, 1.0 - share);
+    }
+
     fn beyond(&self, at: &dyn Geometry<2>, id: ContactId, direction: &Vector<2>) -> Option<f64> {
         let (_, members) = self.shapes_of(id)?;
         let CornerOnSide { owner, corner, side, .. } = CornerOnSide::from_number(id.point());

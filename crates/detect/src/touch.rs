@@ -46,7 +46,7 @@ impl CornerOnSide {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Touch {
     pub(crate) feature: u32,
-    /// Where it acts on either, in the coordinates of their bodies: of two shapes, one place.
+    /// The points, in the coordinates of their bodies.
     pub(crate) points: [Vector<2>; 2],
     /// The unit normal, from the second to the first.
     pub(crate) normal: Vector<2>,
@@ -191,16 +191,11 @@ pub(crate) fn corner_on_side(
     if !along.is_finite() {
         return None;
     }
+    let foot = side.local[0] + (side.local[1] - side.local[0]) * along;
     let gap = side.normal.dot(&(place - begin));
-    let across = side.local[1] - side.local[0];
-    // Not the foot, but the corner's own place. Two bodies that are wedged can press each other with any force, which moves nothing; but
-    // where friction and its reaction act a gap apart, their couple would, and solvers used it: at self-stresses of 1e6 N s a body hung in
-    // the air.
-    let outward = Vector::<2>::new(across.y, -across.x) / direction.norm();
-    let on_other = side.local[0] + across * along + outward * gap;
     let (points, normal) = match feature.owner {
-        0 => ([local, on_other], side.normal),
-        _ => ([on_other, local], -side.normal),
+        0 => ([local, foot], side.normal),
+        _ => ([foot, local], -side.normal),
     };
     let room = (along.min(1.0 - along) + STILL_BESIDE) * direction.norm();
     Some(Touch { feature: feature.number(), points, normal, gap, room })

@@ -89,12 +89,15 @@ fn shapes_act_on_each_other_in_one_place() {
     let shapes = [rectangle(2.0, 1.0), wedge, disc(0.7), rounded(2.0, 1.0, 0.1)];
     let mut looked = 0;
     for (a, b) in shapes.iter().flat_map(|a| shapes.iter().map(move |b| (a, b))) {
+        let detector = pair([a.clone(), b.clone()]);
         // Apart, and in each other.
         for pose in [[[0.0, 0.0, 0.3], [1.7, 1.4, 2.5]], [[0.0, 0.0, 0.1], [0.1, 1.1, -0.2]]] {
-            for contact in found(&pair([a.clone(), b.clone()]), &pose, 10.0) {
+            let at = Poses(pose.to_vec());
+            for mut contact in found(&detector, &pose, 10.0) {
+                detector.bring_together(&at, &mut contact);
                 let [one, other] = contact.sides.map(|side| {
                     let mut place = [Vector2::zeros()];
-                    Poses(pose.to_vec()).place(side.body, &[side.point], &mut place);
+                    at.place(side.body, &[side.point], &mut place);
                     place[0]
                 });
                 assert!((one - other).norm() < 1e-14, "{contact:?}");

@@ -40,6 +40,8 @@ pub struct ContactStage<const D: usize> {
     extra: Vec<(usize, Block<D>)>,
     pub(crate) springs: Springs<D>,
     islands: Islands<D>,
+    /// Whether contacts act where the detector found them, also where that is not one place.
+    acts_as_found: bool,
     /// Whether the last solve was by islands.
     apart: bool,
     /// Whether the last solve was over accelerations.
@@ -67,12 +69,19 @@ impl<const D: usize> ContactStage<D> {
             extra: Vec::new(),
             springs: Springs::default(),
             islands: Islands::default(),
+            acts_as_found: false,
             apart: false,
             forces: false,
             coupled: 0,
             model: None,
             velocities: 0,
         }
+    }
+
+    /// With contacts that act where the detector found them: for a scheme that leaves no gaps, and takes rows elsewhere only for the
+    /// derivatives of velocities.
+    pub(crate) fn acting_as_found(self) -> Self {
+        Self { acts_as_found: true, ..self }
     }
 
     /// Makes room for what a step of the model can need, but for more contacts than some hundred at once.
@@ -248,7 +257,11 @@ impl<const D: usize> ContactStage<D> {
         memory: &Memory,
     ) -> Result<bool, Mismatch> {
         let law = model.law_of(candidate.law)?;
-        self.rows.push(model, q, candidate)?;
+        let mut acting = *candidate;
+        if !self.acts_as_found {
+            model.detector().bring_together(&model.placed_at(q), &mut acting);
+        }
+        self.rows.push(model, q, &acting)?;
         if self.rows.last_is_prescribed(model) {
             self.rows.pop();
             return Ok(false);

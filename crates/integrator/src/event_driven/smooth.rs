@@ -88,8 +88,8 @@ impl Smooth {
         Self {
             contacts: Vec::new(),
             ids: Vec::new(),
-            stage: ContactStage::new(),
-            one: ContactStage::new(),
+            stage: ContactStage::new().acting_as_found(),
+            one: ContactStage::new().acting_as_found(),
             found: Vec::new(),
             probes: Vec::new(),
             rooms: Vec::new(),
