@@ -227,9 +227,10 @@ pub trait ContactDetector<const D: usize>: Send + Sync {
         let _ = (at, ids);
         pieces.clear();
     }
-    /// Moves the sides of a contact that was found in this configuration to one place for both bodies. They are its gap apart, so that
-    /// friction and its reaction are a couple, which no third body feels: where two bodies are wedged and press each other with any force,
-    /// it would move them. The default leaves the sides where they are, as is right where only one of the bodies can turn.
+    /// Moves the sides of a contact that was found in this configuration to one place in the world. As found they are its gap apart, so that
+    /// friction and its reaction make a couple, which no third body balances. Two bodies that are wedged can press each other with any
+    /// force, and the couple would then move them. The default leaves the sides where they are, as is right where only one of the bodies
+    /// can turn.
     fn bring_together(&self, at: &dyn Geometry<D>, contact: &mut Candidate<D>) {
         let _ = (at, contact);
     }

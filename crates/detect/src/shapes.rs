@@ -460,7 +460,8 @@ impl ContactDetector<2> for ShapeDetector {
         pieces.extend(ids.iter().map(|id| self.piece(at, *id).unwrap_or(0)));
     }
 
-    /// To the corner, or to the owner's own rim, so that a disc rolls by its radius; of two discs in the middle of what parts them or yields.
+    /// The place is that of the corner, or the rim of the corner's owner, so that a disc rolls by its radius; of two discs the middle of
+    /// their gap or overlap.
     fn bring_together(&self, at: &dyn Geometry<2>, contact: &mut Candidate<2>) {
         if contact.gap == 0.0 {
             return;

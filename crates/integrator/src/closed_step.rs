@@ -494,9 +494,7 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         let b = match find(&self.ahead, candidate.id) {
             Some(ahead) => {
                 self.row.clear();
-                let mut acting = *ahead;
-                model.detector().bring_together(&model.placed_at(&self.q_ahead), &mut acting);
-                self.row.push(model, &self.q_ahead, &acting)?;
+                self.row.push(model, &self.q_ahead, &model.in_one_place(&self.q_ahead, ahead))?;
                 match self.row.last_is_prescribed(model) {
                     true => Vector::zeros(),
                     false => self.row.velocity(0, &state.v) - u_before,

@@ -35,7 +35,7 @@ pub struct Contact<const D: usize> {
     pub id: ContactId,
     /// Its law.
     pub law: LawId,
-    /// Its points on either side, where its Jacobian rows were taken.
+    /// Its points on either side, as they were found where its Jacobian rows were taken.
     pub sides: [Anchor<D>; 2],
     /// Its frame where its rows were taken, one direction a row.
     pub frame: Frame<D>,

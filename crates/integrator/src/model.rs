@@ -464,6 +464,13 @@ impl<const D: usize> Model<D> {
         Placed { model: self, q }
     }
 
+    /// A contact that was found at coordinates `q`, with both sides in one place ([`ContactDetector::bring_together`]).
+    pub(crate) fn in_one_place(&self, q: &[f64], candidate: &Candidate<D>) -> Candidate<D> {
+        let mut together = *candidate;
+        self.detector.bring_together(&self.placed_at(q), &mut together);
+        together
+    }
+
     /// Writes the prescribed velocities at time `t` into their places in `v`.
     ///
     /// # Errors

@@ -84,6 +84,12 @@ impl<const D: usize> ContactStage<D> {
         Self { acts_as_found: true, ..self }
     }
 
+    /// A candidate with its sides where they act.
+    #[inline(always)]
+    fn acting(&self, model: &Model<D>, q: &[f64], candidate: &Candidate<D>) -> Candidate<D> {
+        if self.acts_as_found { *candidate } else { model.in_one_place(q, candidate) }
+    }
+
     /// Makes room for what a step of the model can need, but for more contacts than some hundred at once.
     pub fn reserve(&mut self, model: &Model<D>) {
         let contacts = model.detector().capacity().min(RESERVED_CONTACTS);
@@ -257,11 +263,7 @@ impl<const D: usize> ContactStage<D> {
         memory: &Memory,
     ) -> Result<bool, Mismatch> {
         let law = model.law_of(candidate.law)?;
-        let mut acting = *candidate;
-        if !self.acts_as_found {
-            model.detector().bring_together(&model.placed_at(q), &mut acting);
-        }
-        self.rows.push(model, q, &acting)?;
+        self.rows.push(model, q, &self.acting(model, q, candidate))?;
         if self.rows.last_is_prescribed(model) {
             self.rows.pop();
             return Ok(false);
@@ -432,12 +434,13 @@ impl<const D: usize> ContactStage<D> {
         self.check(model)?;
         self.check_index(i)?;
         length("the coordinates", q, model.size().q)?;
+        let acting = self.acting(model, q, candidate);
         let contact = &mut self.contacts[i];
         if contact.id != candidate.id {
             return Err(Mismatch::OtherContact { contact: i });
         }
         self.coupled = 0;
-        self.rows.renew(model, q, candidate, i)?;
+        self.rows.renew(model, q, &acting, i)?;
         (contact.sides, contact.frame, contact.gap) = (candidate.sides, candidate.frame, candidate.gap);
         Ok(())
     }

@@ -12,9 +12,9 @@ const ATTEMPTS: usize = 10;
 /// Times are located to this part of the step.
 const AT_ONCE: f64 = 1e-12;
 
-/// Where as many attempts haven't done that, to this part: frames are taken where the motion without impulses goes, which may be past the
-/// end, and attempts then fall short of it and go too far in turn, by far less than this.
-const AFTER: usize = 5;
+/// After this many attempts a time is located well enough to this larger part of the step. Frames are taken where the motion without
+/// impulses goes, which may be past the end; attempts then end before it and past it in turn, closer than this to each other.
+const STRICT_ATTEMPTS: usize = 5;
 const NEARLY_AT_ONCE: f64 = 1e-6;
 
 /// Halvings of a time, from a step to rounding.
@@ -42,7 +42,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         }
         let (mut attempted, mut outcome_of_it) = (part.h, outcome);
         for attempt in 0..ATTEMPTS {
-            let at_once = if attempt < AFTER { AT_ONCE } else { NEARLY_AT_ONCE };
+            let at_once = if attempt < STRICT_ATTEMPTS { AT_ONCE } else { NEARLY_AT_ONCE };
             // One that falls short is taken further.
             let between = if is_past { [0.0, attempted] } else { [attempted, part.h] };
             let tau = self.passes_end(model, from, attempted, between, work)?;

@@ -19,7 +19,7 @@ fn wedge(tilt: &str, disc: &str, friction: &str, more: &str) -> String {
 #[test]
 fn a_body_with_a_disc_in_its_wedge_comes_to_rest_on_both_feet() {
     let disc = "position = ['0.01175 m', '0.45 m']\nvelocity = ['0.3018 m/s', '0 m/s']\nspin = '0.9115 rad/s'";
-    // With a foot of its own for each, the self-stress grew to 1e6 N s a step, and the body stood askew.
+    // When each of two bodies pushed the other at its own surface, the self-stress grew to 1e6 N s a step, and the body stood askew.
     let (simulation, _) = run(&wedge("-3.7387 deg", disc, "0.7", ""), "200 us");
     let [.., tilt] = pose(&simulation, "vee");
     assert!(tilt.abs() < 1e-6, "{tilt}");

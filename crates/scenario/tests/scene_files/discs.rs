@@ -39,7 +39,8 @@ fn a_disc_lets_go_at_the_corner_in_time() {
 fn a_disc_falls_from_the_edge_and_not_before() {
     let (g, v, end) = (9.81, 3.0, 0.03);
     for k in 0..20 {
-        let x = -0.03 - 0.0015 * f64::from(k) / 10.0;
+        // Over one step in 20 parts.
+        let x = -0.03 - 1.5e-4 * f64::from(k);
         let scene = format!(
             "[time]\nend = '{end} s'\n[world]\ngravity = '{g} m/s^2'\n\
              [block.table]\nfixed = true\ndensity = '2000 kg/m^3'\nwidth = '1 m'\nheight = '0.5 m'\ndepth = '0.1 m'\nposition = ['-0.5 m', '0.25 m']\n\
