@@ -491,6 +491,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         work: &mut Workspace<D>,
     ) -> Result<(), StepError> {
         self.step.find_what_stays();
+        self.step.forget_what_opened();
         self.stays.clear();
         let contacts = self.step.stage.contacts().iter().zip(&self.step.stays);
         // A pressed spring is kept for the contact that takes it over.
