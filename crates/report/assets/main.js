@@ -111,8 +111,10 @@
       const [prefix, factor] = forces.units[k][i];
       const sums = key === "tangential" && forces.shares?.includes(k);
       const [, sum] = forces.sums?.find(([of]) => of === k) ?? [];
-      const meansOfSum = { label: "", index: 0, t: forces.borders, y: scaled(sumOf(points), factor), stepped: true };
-      const lines = !sums ? series(key, factor) : [sum ? { label: "", index: 0, t: curves.t, y: scaled(sum, factor), known: atPictures(meansOfSum) } : meansOfSum];
+      // Its colour is that of none of the points.
+      const ofSum = { label: "sum", index: points.length };
+      const meansOfSum = { ...ofSum, t: forces.borders, y: scaled(sumOf(points), factor), stepped: true };
+      const lines = !sums ? series(key, factor) : [sum ? { ...ofSum, t: curves.t, y: scaled(sum, factor), known: atPictures(meansOfSum) } : meansOfSum];
       const means = key === "normal" ? points.filter(({ mean }) => mean).map((point) =>
         ({ label: contact.points[point.point].label, index: points.indexOf(point), t: forces.borders, y: scaled(point.mean, factor) })) : [];
       for (const line of lines) line.raw = means.some(({ index }) => index === line.index);
@@ -230,6 +232,9 @@
     byId("time-readout").dataset.t = t;
     const angles = (crowd ? [] : readOut)
       .map(([name, k]) => `${several ? `${name}: ` : ""}φ = ${hundredths(frames.blocks[k].phi[frame] * degrees)}°`);
+    // A list of a few of many, or of zeros, tells nothing on paper, where no other time can be asked for.
+    const isTelling = unread === 0 && readOut.some(([, k]) => hundredths(frames.blocks[k].phi[frame] * degrees) !== "0.00");
+    byId("scene-readout").classList.toggle("on-screen", !isTelling);
     if (angles.length && unread > 0) angles.push(`… ${unread} more`);
     byId("scene-readout").replaceChildren();
     angles.forEach((text, k) => {
@@ -502,6 +507,9 @@
     return [...swing, last].filter((k) => k !== frame);
   }
 
+  /** Half the width of an A4 page, px. */
+  const paperColumn = 330;
+
   // Paper can't be asked for another time or contact: it has the telling pictures, and the strongest contacts.
   let printed = null;
   window.addEventListener("beforeprint", () => {
@@ -509,8 +517,13 @@
     document.querySelectorAll("details.again, #model, #warnings details").forEach((one) => one.setAttribute("open", ""));
     if (printed) return;
     setPlaying(false);
-    printed = { frame, pictures: htmlElement("div", "printed", undefined, byId("stage")) };
-    for (const k of telling()) {
+    printed = { frame, pictures: htmlElement("div", "printed") };
+    byId("stage").querySelector("figure").after(printed.pictures);
+    // Two beside each other, with type as large as it is on a screen.
+    const pictures = telling();
+    byId("stage").classList.toggle("pairs", pictures.length > 0);
+    scene.layoutFor(pictures.length > 0 ? paperColumn : null);
+    for (const k of pictures) {
       show(k);
       scene.crop(true);
       const figure = htmlElement("figure", "", undefined, printed.pictures);
@@ -518,7 +531,8 @@
       picture.removeAttribute("id");
       figure.append(picture);
       const why = k === times.length - 1 ? "At the end" : "With a block turned furthest from its start";
-      htmlElement("figcaption", "", `${why}: ${byId("time-readout").textContent} ${byId("scene-readout").textContent}`, figure);
+      const angles = byId("scene-readout").classList.contains("on-screen") ? "" : ` ${byId("scene-readout").textContent}`;
+      htmlElement("figcaption", "", `${why}: ${byId("time-readout").textContent}${angles}`, figure);
     }
     show(printed.frame);
     scene.crop(true);
@@ -530,6 +544,9 @@
     if (!printed) return;
     scene.crop(false);
     printed.pictures.remove();
+    byId("stage").classList.remove("pairs");
+    scene.layoutFor(null);
+    show(printed.frame);
     printed = null;
     if (active.length > 3) plots.choose(Number(byId("choice").querySelector("select").value));
     plots.drawFor(null);

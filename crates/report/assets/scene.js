@@ -162,8 +162,11 @@ const scene = (() => {
   /** Whether the picture goes up and down with what it follows, too. */
   let followsUp = true;
 
+  /** The width on paper. */
+  let paper = null;
+
   function layout() {
-    width = root.parentElement.clientWidth;
+    width = paper ?? root.parentElement.clientWidth;
     const box = bounds();
     const [across, up] = [Math.max(box[2] - box[0], 1e-9), Math.max(box[3] - box[1], 1e-9)];
     const [inner, tallest] = [width - padding.left - padding.right, Math.min(420, 0.62 * window.innerHeight + 60)];
@@ -173,6 +176,18 @@ const scene = (() => {
     view = { ...whole };
     closest = null;
     setAll(root, { viewBox: `0 0 ${width} ${height}`, width, height });
+    build();
+  }
+
+  /** Lays the picture out anew for a width on paper, or again for that of the screen, and looks where it looked before. */
+  function layoutFor(wanted) {
+    const [before, looked, near, all] = [width, { ...view }, closest, isWhole()];
+    paper = wanted;
+    layout();
+    if (all) return;
+    const scale = looked.scale * (width / before);
+    closest = near && { ...near, scale: near.scale * (width / before) };
+    view = { ...looked, scale };
     build();
   }
 
@@ -844,6 +859,7 @@ const scene = (() => {
   return {
     draw,
     layout,
+    layoutFor,
     crop,
     zoomBy,
     panBy,
