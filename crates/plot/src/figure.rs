@@ -168,7 +168,7 @@ impl Figure {
         self.above() + panels.map(|(header, inner)| header + inner).sum::<f64>() + self.below()
     }
 
-    /// The legend of each panel: none where the one above it, of curves or of bands, says all of it.
+    /// The legend of each panel: none where those above it, of curves or of bands, say all of it, and none between gave one of its colours another name.
     fn legends(&self) -> Vec<Vec<Entry<'_>>> {
         let (mut of_curves, mut of_bands) = (Vec::new(), Vec::new());
         let mut legends = Vec::new();
@@ -179,7 +179,8 @@ impl Figure {
             if entries.iter().all(is_said) {
                 legends.push(Vec::new());
             } else {
-                above.clone_from(&entries);
+                above.retain(|known| !entries.iter().any(|entry| entry.says_another(known)));
+                above.extend(&entries);
                 legends.push(entries);
             }
         }
@@ -341,6 +342,10 @@ mod tests {
         assert_eq!(names(&more)[5..], [vec!["left", "right"], vec!["left", "top"], vec![]]);
         let svg = more.to_svg();
         assert_eq!(svg.matches(">right</text>").count(), 2);
+        // A further colour leaves the others theirs.
+        let sum = [lines(&left), lines(&[("sum", 2)]), lines(&left)];
+        let sum = sum.into_iter().fold(Figure::new("f", "t", Axis::between("x", 0.0, 1.0)), Figure::panel);
+        assert_eq!(names(&sum), [vec!["left", "right"], vec!["sum"], vec![]]);
     }
 
     #[test]

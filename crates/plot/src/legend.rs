@@ -117,15 +117,23 @@ impl<'a> Entry<'a> {
 
     /// Whether another one says the same: that lines or bars of a colour have this name, however they are dashed.
     pub(crate) fn says_the_same(&self, other: &Self) -> bool {
+        self.has_look_of(other) && self.name == other.name
+    }
+
+    /// Whether another one gives the same look another name.
+    pub(crate) fn says_another(&self, other: &Self) -> bool {
+        self.has_look_of(other) && self.name != other.name
+    }
+
+    fn has_look_of(&self, other: &Self) -> bool {
         let number = |symbol: Symbol| match symbol {
             Symbol::Line { number, .. } | Symbol::Bars(number) => Some(number),
             _ => None,
         };
-        let same = match (number(self.symbol), number(other.symbol)) {
+        match (number(self.symbol), number(other.symbol)) {
             (None, None) => self.symbol == other.symbol,
             (own, others) => own == others,
-        };
-        same && self.name == other.name
+        }
     }
 
     fn draw(&self, svg: &mut String, theme: Theme, x: f64, y: f64) {

@@ -531,7 +531,7 @@
       picture.removeAttribute("id");
       figure.append(picture);
       const why = k === times.length - 1 ? "At the end" : "With a block turned furthest from its start";
-      const angles = byId("scene-readout").classList.contains("on-screen") ? "" : ` ${byId("scene-readout").textContent}`;
+      const angles = byId("scene-readout").classList.contains("on-screen") ? "" : ` · ${byId("scene-readout").textContent}`;
       htmlElement("figcaption", "", `${why}: ${byId("time-readout").textContent}${angles}`, figure);
     }
     show(printed.frame);

@@ -536,7 +536,7 @@ const plots = (() => {
     readOut(now);
   }
 
-  /** Marks the legends that paper doesn't need, where names have no values: those whose curves, or states, the last legend above them names. */
+  /** Marks the legends that paper doesn't need, where names have no values: those whose curves, or states, legends above them name. */
   function foldLegends() {
     let above = new Map();
     for (const { element, series, bands, guideKey } of panels.filter((panel) => !panel.element.hidden)) {
@@ -548,7 +548,9 @@ const plots = (() => {
       if (!keys.length) continue;
       const isSaid = keys.every(([name, how]) => above.get(name) === how);
       legend.classList.toggle("said", isSaid);
-      if (!isSaid) above = new Map(keys);
+      if (isSaid) continue;
+      // What gets another name here is no longer known by its old one.
+      above = new Map([...above].filter(([, how]) => !keys.some(([, own]) => own === how)).concat(keys));
     }
   }
 

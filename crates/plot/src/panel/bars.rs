@@ -1,12 +1,14 @@
 //! Bars of several series.
 
-use super::drawing::THINNEST;
 use crate::figure::Frame;
 use crate::series::Drawn;
 use crate::theme::{Colour, Theme};
 use crate::{Axis, Series};
 use std::collections::BTreeMap;
 use std::fmt::Write;
+
+/// Width of a bar of a stretch too short for its colour to be seen, px.
+const THINNEST: f64 = 1.5;
 
 /// Bars of series, without outlines, which would be wider than the bars of short stretches.
 pub(super) fn draw_bars(svg: &mut String, frame: &Frame, theme: Theme, y: &Axis, series: &[Series]) {

@@ -256,7 +256,7 @@ fn draw_grid(svg: &mut String, frame: &Frame, theme: Theme, y: &Axis) -> String 
 }
 
 /// Width of a stretch too short to be seen, px.
-pub(super) const THINNEST: f64 = 0.8;
+const THINNEST: f64 = 0.8;
 
 fn draw_bands(svg: &mut String, frame: &Frame, theme: Theme, bands: &[Band]) {
     let (height, beside) = (row_height(bands), named_beside(bands));
