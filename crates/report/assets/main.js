@@ -498,17 +498,22 @@
     lastWidth = document.documentElement.clientWidth;
     requestAnimationFrame(relayout);
   }).observe(document.documentElement);
-  /** The picture in which a block is turned furthest from its start, and the last one. */
+  /** The picture in which a block is turned furthest from its start, and the last one, if it looks otherwise. */
   function telling() {
     const last = times.length - 1;
     const turned = (k) => frames.blocks.reduce((most, { phi }) => Math.max(most, Math.abs(phi[k] - phi[0])), 0);
     const furthest = times.reduce((best, _, k) => (turned(k) > turned(best) ? k : best), 0);
     const swing = turned(furthest) > turned(last) + 1e-3 ? [furthest] : [];
-    return [...swing, last].filter((k) => k !== frame);
+    // What stands still looks as it does now.
+    const moves = ({ x, y, phi }, k) => Math.hypot(x[last] - x[frame], y[last] - y[frame]) > 1e-3 * scenery.blocks[k].reach || Math.abs(phi[last] - phi[frame]) > 1e-3;
+    const ending = scenery.beams.length > 0 || frames.blocks.some(moves) ? [last] : [];
+    return [...swing, ...ending].filter((k) => k !== frame);
   }
 
-  /** Half the width of an A4 page, px. */
-  const paperColumn = 330;
+  /** Widths of pictures on an A4 page, px: of two and of three beside each other. */
+  const [half, third] = [330, 216];
+  /** From this height to their width on three pictures stand beside each other. */
+  const tall = 0.5;
 
   // Paper can't be asked for another time or contact: it has the telling pictures, and the strongest contacts.
   let printed = null;
@@ -519,10 +524,14 @@
     setPlaying(false);
     printed = { frame, pictures: htmlElement("div", "printed") };
     byId("stage").querySelector("figure").after(printed.pictures);
-    // Two beside each other, with type as large as it is on a screen.
+    // Beside each other, with type as large as it is on a screen.
     const pictures = telling();
-    byId("stage").classList.toggle("pairs", pictures.length > 0);
-    scene.layoutFor(pictures.length > 0 ? paperColumn : null);
+    byId("stage").classList.toggle("beside", pictures.length > 0);
+    if (pictures.length > 0) scene.layoutFor(half);
+    if (pictures.length > 1 && scene.crop(true) > tall) {
+      byId("stage").classList.add("thirds");
+      scene.layoutFor(third);
+    }
     for (const k of pictures) {
       show(k);
       scene.crop(true);
@@ -531,8 +540,9 @@
       picture.removeAttribute("id");
       figure.append(picture);
       const why = k === times.length - 1 ? "At the end" : "With a block turned furthest from its start";
-      const angles = byId("scene-readout").classList.contains("on-screen") ? "" : ` · ${byId("scene-readout").textContent}`;
-      htmlElement("figcaption", "", `${why}: ${byId("time-readout").textContent}${angles}`, figure);
+      const caption = htmlElement("figcaption", "", `${why}: ${byId("time-readout").textContent}`, figure);
+      const angles = byId("scene-readout");
+      if (!angles.classList.contains("on-screen")) caption.append(" · ", ...[...angles.childNodes].map((one) => one.cloneNode(true)));
     }
     show(printed.frame);
     scene.crop(true);
@@ -544,7 +554,7 @@
     if (!printed) return;
     scene.crop(false);
     printed.pictures.remove();
-    byId("stage").classList.remove("pairs");
+    byId("stage").classList.remove("beside", "thirds");
     scene.layoutFor(null);
     show(printed.frame);
     printed = null;
