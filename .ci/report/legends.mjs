@@ -93,7 +93,8 @@ export async function idleOnPaper(page) {
     let above = "";
     for (const panel of [...document.querySelectorAll("#plots .panel")].filter(isSeen)) {
       const legend = panel.querySelector(".head > .legend");
-      const text = legend && isSeen(legend) ? legend.innerText.trim() : "";
+      const colours = legend ? [...legend.querySelectorAll("path")].map((one) => one.style.stroke || one.style.fill) : [];
+      const text = legend && isSeen(legend) ? `${legend.innerText.trim().split(/\s*\n\s*/).join(", ")} ${colours.join(" ")}`.trim() : "";
       if (text && text === above) problems.push(`${panel.id} repeats the legend ${text}`);
       if (text) above = text;
     }

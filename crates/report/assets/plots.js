@@ -248,7 +248,7 @@ const plots = (() => {
   }
 
   /** Width of a bar of a stretch too short to be seen, px. */
-  const thinnest = 1.2;
+  const thinnest = 2;
 
   /** Of what isn't but in some stretches of time, as impulses: a bar for each of these; those of several series over the same one stand beside each other. */
   function bars(series, all, x, y) {
