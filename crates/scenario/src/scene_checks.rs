@@ -449,13 +449,17 @@ mod tests {
 
     #[test]
     fn a_block_in_the_air_may_have_any_angle() {
-        let free = |contact: &str| {
+        let free = |height: &str, contact: &str| {
             let text = SCENE
-                .replace("on = 'b'\nat = '50 cm'", "position = ['0.5 m', '2 m']\nangle = '40 deg'")
+                .replace("on = 'b'\nat = '50 cm'", &format!("position = ['0.5 m', '{height}']\nangle = '40 deg'"))
                 .replace("[contact.c]\nbetween = ['k', 'b']\nfriction = 0.5\n", contact);
             crate::load(text.as_bytes(), "f", "f", &[]).unwrap().warnings.len()
         };
-        assert_eq!(free(""), 0);
-        assert_eq!(free("[contact.c]\nbetween = ['k', 'b']\nfriction = 0.5\n"), 1);
+        assert_eq!(free("2 m", ""), 0);
+        let contact = "[contact.c]\nbetween = ['k', 'b']\nfriction = 0.5\n";
+        assert_eq!(free("2 m", contact), 0);
+        // With its lowest corner on the beam.
+        assert_eq!(free("11.124 cm", contact), 1);
+        assert_eq!(free("11.124 cm", ""), 0);
     }
 }
