@@ -10,7 +10,7 @@ export function otherAngles() {
   return keys.flatMap((key) => {
     const name = [...key.childNodes].find((node) => node.nodeType === Node.TEXT_NODE)?.textContent;
     const [body, text] = [bodies.find((one) => one.body === name) ?? bodies[0], key.querySelector("b").textContent.replace("−", "-")];
-    if (!body || (!name && keys.length > 1) || /e/.test(text)) return [];
+    if (!body || (!name && keys.length > 1) || text.includes("×")) return [];
     const half = 0.5 * 10 ** -(text.split(".")[1] ?? "").length;
     // What is at rest is 0.
     const off = Math.abs(Number(text) - unit * Number(body.phi));
@@ -55,7 +55,56 @@ export async function plotsPointedAt(page) {
   }
   const lines = await page.$$eval('[id^="panel-impacts-"] .curve', (all) => all.length);
   if (lines > 0) problems.push("impulses are drawn as lines, not as bars");
+  const outlined = await page.$$eval(".bars", (all) => all.filter((one) => getComputedStyle(one).stroke !== "none").length);
+  if (outlined > 0) problems.push("bars have outlines");
+  // Those of several feet over one stretch stand beside each other.
+  const hidden = await page.$$eval('[id^="panel-impacts-"]', (all) => all.filter((panel) => {
+    const lefts = [...panel.querySelectorAll(".bars")].map((one) => new Set((one.getAttribute("d").match(/M[-0-9.]+/g) ?? [])));
+    const shared = lefts.slice(1).flatMap((own) => [...own].filter((left) => lefts[0].has(left)));
+    return shared.length > 0.5 * Math.min(...lefts.map((own) => own.size)) && shared.length > 2;
+  }).map((panel) => panel.id));
+  hidden.forEach((id) => problems.push(`${id}: bars hide each other`));
   return problems;
+}
+
+/** States in the legend of a contact that never occur in it. Runs in the page. */
+export function statesThatNeverOccur() {
+  const letters = { stick: "k", slip: "l", briefly: "b", open: "o" };
+  const { points } = JSON.parse(document.getElementById("data").textContent).forces;
+  return [...document.querySelectorAll('[id^="panel-state-"]')].flatMap((panel) => {
+    const own = points.filter(({ contact }) => panel.id === `panel-state-${contact}`);
+    return [...panel.querySelectorAll(".legend i")].map((swatch) => swatch.className)
+      .filter((name) => !own.some(({ state }) => state.includes(letters[name]))).map((name) => `${panel.id}: ${name}`);
+  });
+}
+
+/** What paper shows that tells nothing there: lists of a few of many bodies, or of angles that are all 0; the legend of the plot above once more; pictures
+    that leave half of a page empty beside them. */
+export async function idleOnPaper(page) {
+  await page.emulateMedia({ media: "print" });
+  const found = await page.evaluate(() => {
+    window.dispatchEvent(new Event("beforeprint"));
+    const problems = [];
+    const isSeen = (one) => one.getClientRects().length > 0;
+    for (const caption of document.querySelectorAll("#stage figcaption")) {
+      const text = [...caption.childNodes].filter((one) => one.nodeType === Node.TEXT_NODE || isSeen(one)).map((one) => one.textContent).join("");
+      if (/ more/.test(text) || (text.includes("φ") && !/[1-9]/.test(text.replace(/^.*?φ/, "φ")))) problems.push(`a caption says "${text}"`);
+    }
+    let above = "";
+    for (const panel of [...document.querySelectorAll("#plots .panel")].filter(isSeen)) {
+      const legend = panel.querySelector(".head > .legend");
+      const colours = legend ? [...legend.querySelectorAll("path")].map((one) => one.style.stroke || one.style.fill) : [];
+      const text = legend && isSeen(legend) ? `${legend.innerText.trim().split(/\s*\n\s*/).join(", ")} ${colours.join(" ")}`.trim() : "";
+      if (text && text === above) problems.push(`${panel.id} repeats the legend ${text}`);
+      if (text) above = text;
+    }
+    const pictures = [...document.querySelectorAll("#stage figure")].map((one) => one.getBoundingClientRect());
+    if (pictures.length > 1 && Math.abs(pictures[0].top - pictures[1].top) > 2) problems.push("pictures stand below each other");
+    window.dispatchEvent(new Event("afterprint"));
+    return problems;
+  });
+  await page.emulateMedia({ media: null });
+  return found;
 }
 
 /** Whether plots open on a pair whose forces are small beside those of another that are drawn, for a blow that is small beside them, too; `data` is that of the page,

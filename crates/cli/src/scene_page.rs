@@ -44,7 +44,8 @@ const WARNINGS: &str = "\
 A scene with a warning still runs. `teeter check` and `teeter run` warn of
 
 - a `tilt`, including the incline of the ground, within 10 % of the critical angle α = atan(width/height), or beyond it: released
-  at rest the block overturns; or an `angle` beyond that of the side on which the block lies, atan(height/width) on its side;
+  at rest the block overturns; or, of a block that stands on something, an `angle` beyond that of the side on which it lies,
+  atan(height/width) on its side: in flight it has no foot about which to overturn;
 - a force on a block that can't follow it, as it is fixed or its motion is prescribed;
 - a beam that sags by more than 1/50 of its span under the weight of the blocks on it: deflections are no longer small (`check`
   notes a sag from 1/250 on: linear theory neglects the shortening of the axis, at 1/68 some per cent of the block's angle);

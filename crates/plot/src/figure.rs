@@ -1,6 +1,6 @@
 //! A figure: stacked panels with a common x axis, as SVG.
 
-use crate::legend::{Legend, NOTE_LEFT, ROW, note_lines};
+use crate::legend::{Entry, Legend, NOTE_LEFT, ROW, note_lines};
 use crate::theme::{Colour, Theme};
 use crate::ticks::{Ticks, text_width};
 use crate::{Axis, Panel, escaped};
@@ -164,8 +164,27 @@ impl Figure {
 
     /// The height in the units of the drawing.
     fn height(&self) -> f64 {
-        let panels = self.panels.iter().map(|panel| self.heights(panel));
+        let panels = self.heights(&self.legends()).into_iter();
         self.above() + panels.map(|(header, inner)| header + inner).sum::<f64>() + self.below()
+    }
+
+    /// The legend of each panel: none where those above it, of curves or of bands, say all of it, and none between gave one of its colours another name.
+    fn legends(&self) -> Vec<Vec<Entry<'_>>> {
+        let (mut of_curves, mut of_bands) = (Vec::new(), Vec::new());
+        let mut legends = Vec::new();
+        for panel in &self.panels {
+            let entries = panel.entries();
+            let above = if panel.is_plot() { &mut of_curves } else { &mut of_bands };
+            let is_said = |entry: &Entry| above.iter().any(|known: &Entry| known.says_the_same(entry));
+            if entries.iter().all(is_said) {
+                legends.push(Vec::new());
+            } else {
+                above.retain(|known| !entries.iter().any(|entry| entry.says_another(known)));
+                above.extend(&entries);
+                legends.push(entries);
+            }
+        }
+        legends
     }
 
     /// Height of the heading above the panels.
@@ -185,9 +204,10 @@ impl Figure {
     /// The figure as an SVG document, which can also be embedded in an HTML page.
     #[must_use]
     pub fn to_svg(&self) -> String {
-        let heights: Vec<(f64, f64)> = self.panels.iter().map(|panel| self.heights(panel)).collect();
+        let legends = self.legends();
+        let heights = self.heights(&legends);
         let total = self.height();
-        let beside = self.panels.iter().map(|panel| self.legend.beside(&panel.entries()).0).fold(0.0, f64::max);
+        let beside = legends.iter().map(|entries| self.legend.beside(entries).0).fold(0.0, f64::max);
         let width = self.width + beside;
         let mut svg = String::new();
         let _ = writeln!(
@@ -206,10 +226,12 @@ impl Figure {
             let _ = writeln!(svg, "<text x=\"{LEFT}\" y=\"16\" font-size=\"13\">{title}</text>");
         }
         let mut top = self.above();
-        for (number, (panel, (header, height))) in self.panels.iter().zip(heights).enumerate() {
+        let panels = self.panels.iter().zip(&legends).zip(heights).enumerate();
+        for (number, ((panel, entries), (header, height))) in panels {
             top += header;
             let frame = Frame { top, height, across: self.width, x: &self.x };
-            panel.draw(&mut svg, &frame, &format!("{}-{number}", self.id), self.legend, self.theme);
+            self.legend.draw(&mut svg, self.theme, &frame, entries, panel.note_text().as_deref());
+            panel.draw(&mut svg, &frame, &format!("{}-{number}", self.id), self.theme);
             top += height;
         }
         self.draw_x_axis(&mut svg, top);
@@ -226,30 +248,29 @@ impl Figure {
         svg
     }
 
-    /// Heights of the space above a panel's frame and of the frame.
-    fn heights(&self, panel: &Panel) -> (f64, f64) {
-        self.heights_with(panel, self.usual_height())
-    }
-
-    /// The height of panels without one of their own.
-    fn usual_height(&self) -> f64 {
+    /// Heights of the space above each panel's frame and of the frame, with these legends.
+    fn heights(&self, legends: &[Vec<Entry>]) -> Vec<(f64, f64)> {
+        let with = |usual: f64| -> Vec<(f64, f64)> {
+            self.panels.iter().zip(legends).map(|(panel, entries)| self.heights_with(panel, entries, usual)).collect()
+        };
         if self.panels.iter().filter(|panel| panel.is_plot()).count() < 2 {
-            return HEIGHTS[0];
+            return with(HEIGHTS[0]);
         }
-        let panels = self.panels.iter().map(|panel| self.heights_with(panel, HEIGHTS[1]));
-        let all = panels.map(|(header, inner)| header + inner).sum::<f64>() + self.above() + self.below();
-        HEIGHTS[1 + usize::from(all > TALL)]
+        let usual = with(HEIGHTS[1]);
+        let all = usual.iter().map(|(header, inner)| header + inner).sum::<f64>() + self.above() + self.below();
+        if all > TALL { with(HEIGHTS[2]) } else { usual }
     }
 
-    fn heights_with(&self, panel: &Panel, usual: f64) -> (f64, f64) {
-        let (entries, note) = (panel.entries(), panel.note_text());
-        let named = self.legend != Legend::Beside && (!entries.is_empty() || !self.headed);
+    fn heights_with(&self, panel: &Panel, entries: &[Entry], usual: f64) -> (f64, f64) {
+        let note = panel.note_text();
+        let named =
+            self.legend != Legend::Beside && (!entries.is_empty() || (panel.entries().is_empty() && !self.headed));
         let bare = !named && note.is_none();
         let header =
-            if bare { BARE_HEADER } else { HEADER + self.legend.more_height(&entries, note.as_deref(), self.width) };
+            if bare { BARE_HEADER } else { HEADER + self.legend.more_height(entries, note.as_deref(), self.width) };
         let own = panel.own_height_mm().map_or(usual, |height| UNITS_PER_MM * height);
         let inner = panel.bands_height().unwrap_or(own);
-        (header, inner.max(self.legend.beside(&entries).1))
+        (header, inner.max(self.legend.beside(entries).1))
     }
 
     fn draw_x_axis(&self, svg: &mut String, y: f64) {
@@ -294,6 +315,37 @@ mod tests {
         assert!((noted.height_mm() - figure.height_mm() - 2.0 * ROW / UNITS_PER_MM).abs() < 1e-9);
         let svg = noted.to_svg();
         assert!(lines.iter().all(|line| svg.contains(&format!(">{line}</text>"))), "{svg}");
+    }
+
+    #[test]
+    fn a_legend_that_the_one_above_says_is_not_repeated() {
+        let axis = || Axis::between("y", 0.0, 1.0);
+        let lines = |names: &[(&str, usize)]| {
+            let line = |(name, number): &(&str, usize)| Series::line(*name, [(0.0, 0.0), (1.0, 1.0)]).number(*number);
+            Panel::new(axis()).with(names.iter().map(line).collect::<Vec<_>>())
+        };
+        let key = [(Colour::Series(5), "stick")];
+        let bands = || Panel::bands(vec![crate::Band::new("a", Vec::new())], key);
+        let left = [("left", 0), ("right", 1)];
+        let bars = Panel::new(axis()).with([Series::bars("right", [(0.2, 0.4, 1.0)]).number(1)]);
+        let dashed = lines(&left).telling_apart();
+        let figure =
+            [lines(&left).ticks_at(vec![0.5]).ticks_named("impact"), dashed, bars, bands(), lines(&[("kinetic", 0)])]
+                .into_iter()
+                .fold(Figure::new("f", "t", Axis::between("x", 0.0, 1.0)), Figure::panel);
+        let names = |figure: &Figure| -> Vec<Vec<String>> {
+            figure.legends().iter().map(|of| of.iter().map(|entry| entry.name.to_owned()).collect()).collect()
+        };
+        assert_eq!(names(&figure), [vec!["left", "right", "impact"], vec![], vec![], vec!["stick"], vec!["kinetic"]]);
+        // Another name for a colour stands between; and part of a legend would look like all of it.
+        let more = figure.panel(lines(&left)).panel(lines(&[("left", 0), ("top", 2)])).panel(bands());
+        assert_eq!(names(&more)[5..], [vec!["left", "right"], vec!["left", "top"], vec![]]);
+        let svg = more.to_svg();
+        assert_eq!(svg.matches(">right</text>").count(), 2);
+        // A further colour leaves the others theirs.
+        let sum = [lines(&left), lines(&[("sum", 2)]), lines(&left)];
+        let sum = sum.into_iter().fold(Figure::new("f", "t", Axis::between("x", 0.0, 1.0)), Figure::panel);
+        assert_eq!(names(&sum), [vec!["left", "right"], vec!["sum"], vec![]]);
     }
 
     #[test]

@@ -79,7 +79,7 @@ pub(crate) struct Entry<'a> {
     pub(crate) name: &'a str,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Symbol {
     Line {
         number: usize,
@@ -93,6 +93,7 @@ pub(crate) enum Symbol {
     },
     Swatch(Colour),
     Area(usize),
+    Bars(usize),
     /// A dashed line across the panel.
     Guide,
     /// A tick at the top of the panel.
@@ -109,8 +110,30 @@ impl<'a> Entry<'a> {
             Drawn::Marks { mark, hollow } => Symbol::Marks { mark, hollow, faint: series.faint, number },
             Drawn::Area => Symbol::Area(number),
             Drawn::Cells => Symbol::Swatch(Colour::Series(number)),
+            Drawn::Bars => Symbol::Bars(number),
         };
         (!series.label().is_empty()).then_some(Self { symbol, name: series.label() })
+    }
+
+    /// Whether another one says the same: that lines or bars of a colour have this name, however they are dashed.
+    pub(crate) fn says_the_same(&self, other: &Self) -> bool {
+        self.has_look_of(other) && self.name == other.name
+    }
+
+    /// Whether another one gives the same look another name.
+    pub(crate) fn says_another(&self, other: &Self) -> bool {
+        self.has_look_of(other) && self.name != other.name
+    }
+
+    fn has_look_of(&self, other: &Self) -> bool {
+        let number = |symbol: Symbol| match symbol {
+            Symbol::Line { number, .. } | Symbol::Bars(number) => Some(number),
+            _ => None,
+        };
+        match (number(self.symbol), number(other.symbol)) {
+            (None, None) => self.symbol == other.symbol,
+            (own, others) => own == others,
+        }
     }
 
     fn draw(&self, svg: &mut String, theme: Theme, x: f64, y: f64) {
@@ -130,6 +153,14 @@ impl<'a> Entry<'a> {
                 "<rect x=\"{x:.2}\" y=\"{:.2}\" width=\"{SAMPLE}\" height=\"8\" {}/>",
                 y - 8.0,
                 area_style(number, theme)
+            ),
+            Symbol::Bars(number) => write!(
+                svg,
+                "<rect x=\"{:.2}\" y=\"{:.2}\" width=\"{}\" height=\"8\" fill=\"{}\"/>",
+                x + 0.25 * SAMPLE,
+                y - 8.0,
+                0.5 * SAMPLE,
+                Colour::Series(number).value(theme)
             ),
             Symbol::Guide => write!(
                 svg,

@@ -1,5 +1,6 @@
 //! A panel: series on axes, or rows of bands.
 
+mod bars;
 mod drawing;
 
 use crate::figure::LEFT;

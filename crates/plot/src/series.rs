@@ -2,7 +2,7 @@
 
 use crate::theme::SERIES_COLOURS;
 
-/// A named series of points: a line, a staircase, or marks.
+/// A named series of points: a line, a staircase, bars, or marks.
 ///
 /// Where a value is not finite (on a logarithmic axis, not positive), a line is broken and a mark
 /// omitted. Creating an [`Axis`](crate::Axis) from the same values reports such a value as an
@@ -41,6 +41,8 @@ pub(crate) enum Drawn {
     Area,
     /// Filled rectangles, each between two of the points.
     Cells,
+    /// Rectangles like these, from 0 on, which make room for those of other series over the same stretch of x.
+    Bars,
 }
 
 /// The marker shape of a series.
@@ -104,6 +106,14 @@ impl Series {
     pub fn cells(label: impl Into<String>, cells: impl IntoIterator<Item = ((f64, f64), (f64, f64))>) -> Self {
         let corners = cells.into_iter().flat_map(|((left, right), (bottom, top))| [(left, bottom), (right, top)]);
         Self { drawn: Drawn::Cells, ..Self::line(label, corners) }
+    }
+
+    /// Bars from 0 on over stretches of x: from, to, height. Those of several series over the same stretch stand beside each other; each is wide enough
+    /// to be seen. Those without a height aren't drawn.
+    #[must_use]
+    pub fn bars(label: impl Into<String>, bars: impl IntoIterator<Item = (f64, f64, f64)>) -> Self {
+        let corners = bars.into_iter().filter(|bar| bar.2 != 0.0).flat_map(|(from, to, y)| [(from, 0.0), (to, y)]);
+        Self { drawn: Drawn::Bars, ..Self::line(label, corners.collect::<Vec<_>>()) }
     }
 
     /// Filled marks at points. Without a label they aren't in the legend.
@@ -219,7 +229,7 @@ impl Series {
         &self.label
     }
 
-    /// The points; for a staircase, its corners, for an area, its outline, for cells, two corners of each.
+    /// The points; for a staircase, its corners, for an area, its outline, for cells and bars, two corners of each.
     #[must_use]
     pub fn points(&self) -> &[(f64, f64)] {
         &self.points

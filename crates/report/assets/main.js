@@ -111,8 +111,10 @@
       const [prefix, factor] = forces.units[k][i];
       const sums = key === "tangential" && forces.shares?.includes(k);
       const [, sum] = forces.sums?.find(([of]) => of === k) ?? [];
-      const meansOfSum = { label: "", index: 0, t: forces.borders, y: scaled(sumOf(points), factor), stepped: true };
-      const lines = !sums ? series(key, factor) : [sum ? { label: "", index: 0, t: curves.t, y: scaled(sum, factor), known: atPictures(meansOfSum) } : meansOfSum];
+      // Its colour is that of none of the points.
+      const ofSum = { label: "sum", index: points.length };
+      const meansOfSum = { ...ofSum, t: forces.borders, y: scaled(sumOf(points), factor), stepped: true };
+      const lines = !sums ? series(key, factor) : [sum ? { ...ofSum, t: curves.t, y: scaled(sum, factor), known: atPictures(meansOfSum) } : meansOfSum];
       const means = key === "normal" ? points.filter(({ mean }) => mean).map((point) =>
         ({ label: contact.points[point.point].label, index: points.indexOf(point), t: forces.borders, y: scaled(point.mean, factor) })) : [];
       for (const line of lines) line.raw = means.some(({ index }) => index === line.index);
@@ -230,6 +232,9 @@
     byId("time-readout").dataset.t = t;
     const angles = (crowd ? [] : readOut)
       .map(([name, k]) => `${several ? `${name}: ` : ""}φ = ${hundredths(frames.blocks[k].phi[frame] * degrees)}°`);
+    // A list of a few of many, or of zeros, tells nothing on paper, where no other time can be asked for.
+    const isTelling = unread === 0 && readOut.some(([, k]) => hundredths(frames.blocks[k].phi[frame] * degrees) !== "0.00");
+    byId("scene-readout").classList.toggle("on-screen", !isTelling);
     if (angles.length && unread > 0) angles.push(`… ${unread} more`);
     byId("scene-readout").replaceChildren();
     angles.forEach((text, k) => {
@@ -493,14 +498,22 @@
     lastWidth = document.documentElement.clientWidth;
     requestAnimationFrame(relayout);
   }).observe(document.documentElement);
-  /** The picture in which a block is turned furthest from its start, and the last one. */
+  /** The picture in which a block is turned furthest from its start, and the last one, if it looks otherwise. */
   function telling() {
     const last = times.length - 1;
     const turned = (k) => frames.blocks.reduce((most, { phi }) => Math.max(most, Math.abs(phi[k] - phi[0])), 0);
     const furthest = times.reduce((best, _, k) => (turned(k) > turned(best) ? k : best), 0);
     const swing = turned(furthest) > turned(last) + 1e-3 ? [furthest] : [];
-    return [...swing, last].filter((k) => k !== frame);
+    // What stands still looks as it does now.
+    const moves = ({ x, y, phi }, k) => Math.hypot(x[last] - x[frame], y[last] - y[frame]) > 1e-3 * scenery.blocks[k].reach || Math.abs(phi[last] - phi[frame]) > 1e-3;
+    const ending = scenery.beams.length > 0 || frames.blocks.some(moves) ? [last] : [];
+    return [...swing, ...ending].filter((k) => k !== frame);
   }
+
+  /** Widths of pictures on an A4 page, px: of two and of three beside each other. */
+  const [half, third] = [330, 216];
+  /** From this height to their width on three pictures stand beside each other. */
+  const tall = 0.5;
 
   // Paper can't be asked for another time or contact: it has the telling pictures, and the strongest contacts.
   let printed = null;
@@ -509,8 +522,17 @@
     document.querySelectorAll("details.again, #model, #warnings details").forEach((one) => one.setAttribute("open", ""));
     if (printed) return;
     setPlaying(false);
-    printed = { frame, pictures: htmlElement("div", "printed", undefined, byId("stage")) };
-    for (const k of telling()) {
+    printed = { frame, pictures: htmlElement("div", "printed") };
+    byId("stage").querySelector("figure").after(printed.pictures);
+    // Beside each other, with type as large as it is on a screen.
+    const pictures = telling();
+    byId("stage").classList.toggle("beside", pictures.length > 0);
+    if (pictures.length > 0) scene.layoutFor(half);
+    if (pictures.length > 1 && scene.crop(true) > tall) {
+      byId("stage").classList.add("thirds");
+      scene.layoutFor(third);
+    }
+    for (const k of pictures) {
       show(k);
       scene.crop(true);
       const figure = htmlElement("figure", "", undefined, printed.pictures);
@@ -518,7 +540,9 @@
       picture.removeAttribute("id");
       figure.append(picture);
       const why = k === times.length - 1 ? "At the end" : "With a block turned furthest from its start";
-      htmlElement("figcaption", "", `${why}: ${byId("time-readout").textContent} ${byId("scene-readout").textContent}`, figure);
+      const caption = htmlElement("figcaption", "", `${why}: ${byId("time-readout").textContent}`, figure);
+      const angles = byId("scene-readout");
+      if (!angles.classList.contains("on-screen")) caption.append(" · ", ...[...angles.childNodes].map((one) => one.cloneNode(true)));
     }
     show(printed.frame);
     scene.crop(true);
@@ -530,6 +554,9 @@
     if (!printed) return;
     scene.crop(false);
     printed.pictures.remove();
+    byId("stage").classList.remove("beside", "thirds");
+    scene.layoutFor(null);
+    show(printed.frame);
     printed = null;
     if (active.length > 3) plots.choose(Number(byId("choice").querySelector("select").value));
     plots.drawFor(null);

@@ -118,8 +118,9 @@ function number(x, digits = 4) {
   if (x === 0) return "0";
   const size = Math.abs(x);
   const plain = size >= 10 ** digits ? x.toFixed(0) : x.toPrecision(digits);
-  const text = size < 1e-4 || size >= 1e6 ? x.toExponential(digits - 1) : plain;
-  return text.replace(/-/g, "−");
+  if (size >= 1e-4 && size < 1e6) return plain.replace("-", "−");
+  const [factor, power] = x.toExponential(digits - 1).split("e");
+  return `${factor.replace("-", "−")} × ${powerOfTen(Number(power))}`;
 }
 
 /** A number beside a plot whose largest value is `most`: with few digits, and no more decimals than tell a hundred-thousandth of that. */

@@ -40,7 +40,8 @@ const plots = (() => {
     for (const series of keys) {
       const key = htmlElement("span", series.label ? "key" : "key bare", undefined, legend);
       const swatch = svgElement("svg", { viewBox: "0 0 18 8", "aria-hidden": "true" }, key);
-      if (series.upper) svgElement("path", { d: "M0 0h18v8h-18z", class: "area", style: `fill: ${colour(series.index)}; fill-opacity: ${series.inner ? 0.45 : 0.2}` }, swatch);
+      if (series.bars) svgElement("path", { d: "M5 0h8v8h-8z", style: `fill: ${colour(series.index)}` }, swatch);
+      else if (series.upper) svgElement("path", { d: "M0 0h18v8h-18z", class: "area", style: `fill: ${colour(series.index)}; fill-opacity: ${series.inner ? 0.45 : 0.2}` }, swatch);
       else svgElement("path", { d: "M0 4h18", style: `${series.alone?.includes(true) ? solidStroke(series) : stroke(series) + offset(series)}`, "stroke-width": 2 }, swatch);
       if (series.label) key.append(series.label);
       series.readout = htmlElement("b", "", "", key);
@@ -52,8 +53,9 @@ const plots = (() => {
       svgElement("path", { d: "M0 4h18", class: "guide" }, swatch);
       panel.guideKey.append("critical angle");
     }
-    for (const [className, word] of panel.bands ? [["stick", "stick"], ["slip", "slip"], ["briefly", "presses briefly"], ["open", "open"]] : []) {
-      if (className === "briefly" && !panel.bands.some(({ state }) => state.includes("b"))) continue;
+    for (const [letter, className, word] of panel.bands ? [["k", "stick", "stick"], ["l", "slip", "slip"], ["b", "briefly", "presses briefly"], ["o", "open", "open"]] : []) {
+      // What never occurs needs no name.
+      if (!panel.bands.some(({ state }) => state.includes(letter))) continue;
       const key = htmlElement("span", "key", undefined, legend);
       htmlElement("i", className, undefined, key);
       key.append(word);
@@ -119,7 +121,7 @@ const plots = (() => {
       .reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
     const within = 0.01 * Math.min(Math.max(high - low, leastRange(low, high, panel.least ?? 0)), 2 * (cut?.limit ?? Infinity));
     const near = (a, b) => {
-      if (a.t !== b.t || a.inPart || a.upper || b.upper || a.raw !== b.raw || a.y.length !== b.y.length) return false;
+      if (a.t !== b.t || a.inPart || a.bars || a.upper || b.upper || a.raw !== b.raw || a.y.length !== b.y.length) return false;
       const same = a.y.map((x, i) => Math.abs(x - b.y[i]) <= within);
       const away = same.filter((_, i) => Math.abs(a.y[i]) > within);
       return same.every(Boolean) || (20 * away.length > same.length && 2 * away.filter(Boolean).length > away.length);
@@ -245,20 +247,27 @@ const plots = (() => {
     return turns > width() - margin.left - margin.right;
   }
 
-  /** Of what isn't but in some stretches of time, as impulses: a bar for each of these. */
-  function bars(series, x, y) {
+  /** Width of a bar of a stretch too short to be seen, px. */
+  const thinnest = 2;
+
+  /** Of what isn't but in some stretches of time, as impulses: a bar for each of these; those of several series over the same one stand beside each other. */
+  function bars(series, all, x, y) {
     let d = "";
     for (let i = Math.max(0, indexAt(series.t, view[0])); i < series.y.length && series.t[i] <= view[1]; i++) {
-      if (series.y[i] > 0) d += `M${x(series.t[i]).toFixed(1)} ${y(0).toFixed(1)}V${y(series.y[i]).toFixed(1)}H${x(series.t[i + 1]).toFixed(1)}V${y(0).toFixed(1)}Z`;
+      if (!(series.y[i] > 0)) continue;
+      const sharing = all.filter((other) => other.y[i] > 0);
+      const [from, to] = [x(series.t[i]), x(series.t[i + 1])];
+      const wide = Math.max(thinnest, (to - from) / sharing.length);
+      const left = (from + to) / 2 + (sharing.indexOf(series) - sharing.length / 2) * wide;
+      d += `M${left.toFixed(1)} ${y(0).toFixed(1)}V${y(series.y[i]).toFixed(1)}h${wide.toFixed(1)}V${y(0).toFixed(1)}Z`;
     }
-    // Where all of them lie on others they are dashed, as lines are.
-    return `<path class="bars" style="${stroke(series)}${series.over ? "" : `; fill: ${colour(series.index)}`}" d="${d}"/>`;
+    return `<path class="bars" style="fill: ${colour(series.index)}" d="${d}"/>`;
   }
 
-  function curve(series, x, y, isAlone) {
-    if (series.bars) return bars(series, x, y);
+  function curve(series, x, y, all) {
+    if (series.bars) return bars(series, all, x, y);
     if (series.upper) return `<path class="area" style="fill: ${colour(series.index)}" d="${area(series, x, y)}"/>`;
-    const kind = `curve${series.raw ? " raw" : !isAlone && isDense(series, y) ? " dense" : ""}`;
+    const kind = `curve${series.raw ? " raw" : all.length > 1 && isDense(series, y) ? " dense" : ""}`;
     const solid = (series.over || series.inPart) && series.alone.includes(true)
       ? `<path class="${kind}" style="${solidStroke(series)}" d="${path({ ...series, y: alone(series, series.y) }, x, y)}"/>` : "";
     return `<path class="${kind}" style="${stroke(series)}" d="${path(series, x, y)}"/>${solid}`;
@@ -334,7 +343,7 @@ const plots = (() => {
       body = axes(panel.svg, size, timeTicks(), yTicks, px, y)
         + `<g clip-path="url(#${clip})">`
         + (panel.guides ?? []).map((at) => `<path class="guide" d="M${margin.left} ${y(at).toFixed(1)}H${size.width}"/>`).join("")
-        + panel.series.map((series) => curve(series, px, y, panel.series.length < 2)).join("")
+        + panel.series.map((series) => curve(series, px, y, panel.series)).join("")
         + `<path class="impacts" d="${impacts}"/></g>`;
     }
     panel.svg.innerHTML = `${inside}${body}<path class="hover"/><text class="hover-time" text-anchor="middle"/><path class="cursor"/><rect class="selection"/>`;
@@ -527,6 +536,24 @@ const plots = (() => {
     readOut(now);
   }
 
+  /** Marks the legends that paper doesn't need, where names have no values: those whose curves, or states, legends above them name. */
+  function foldLegends() {
+    let above = new Map();
+    for (const { element, series, bands, guideKey } of panels.filter((panel) => !panel.element.hidden)) {
+      const legend = element.querySelector(".legend");
+      if (!legend) continue;
+      const keys = bands ? [...legend.querySelectorAll(".key")].map((key) => [key.textContent, key.querySelector("i")?.className ?? ""])
+        : series.filter(({ raw, label }) => !raw && label).map(({ label, index }) => [label, index]);
+      if (guideKey) keys.push(["critical angle", guideKey.hidden ? "" : "guide"]);
+      if (!keys.length) continue;
+      const isSaid = keys.every(([name, how]) => above.get(name) === how);
+      legend.classList.toggle("said", isSaid);
+      if (isSaid) continue;
+      // What gets another name here is no longer known by its old one.
+      above = new Map([...above].filter(([, how]) => !keys.some(([, own]) => own === how)).concat(keys));
+    }
+  }
+
   /** Shows the panels of these contacts, hides those of the others. */
   function choose(...contacts) {
     for (const panel of panels) panel.element.hidden = panel.contact !== undefined && !contacts.includes(panel.contact);
@@ -535,6 +562,7 @@ const plots = (() => {
   return {
     drawFor(wanted) {
       paper = wanted;
+      foldLegends();
       redraw();
     },
     choose, add, redraw, rowHeight, margin, zoom,

@@ -162,13 +162,18 @@ const scene = (() => {
   /** Whether the picture goes up and down with what it follows, too. */
   let followsUp = true;
 
+  /** The width on paper, and the height there of pictures that are taller than wide, px. */
+  let paper = null;
+  const tallestOnPaper = 215;
+
   function layout() {
-    width = root.parentElement.clientWidth;
+    width = paper ?? root.parentElement.clientWidth;
     const box = bounds();
     const [across, up] = [Math.max(box[2] - box[0], 1e-9), Math.max(box[3] - box[1], 1e-9)];
-    const [inner, tallest] = [width - padding.left - padding.right, Math.min(420, 0.62 * window.innerHeight + 60)];
-    const scale = Math.min(inner / across, (Math.max(260, tallest) - padding.top - padding.bottom) / up);
-    height = Math.max(isFarFlung(scale) ? 320 : 230, Math.ceil(padding.top + padding.bottom + up * scale));
+    const [inner, tallest] = [width - padding.left - padding.right, paper ? tallestOnPaper : Math.max(260, Math.min(420, 0.62 * window.innerHeight + 60))];
+    const scale = Math.min(inner / across, (tallest - padding.top - padding.bottom) / up);
+    const least = isFarFlung(scale) ? 320 : 230;
+    height = Math.max(paper ? Math.min(least, tallestOnPaper) : least, Math.ceil(padding.top + padding.bottom + up * scale));
     whole = { x: (box[0] + box[2]) / 2, y: box[1], scale };
     view = { ...whole };
     closest = null;
@@ -176,7 +181,19 @@ const scene = (() => {
     build();
   }
 
-  /** Cuts off what is empty above and below all that is drawn, for which paper has no room, or shows it again. */
+  /** Lays the picture out anew for a width on paper, or again for that of the screen, and looks where it looked before. */
+  function layoutFor(wanted) {
+    const [before, looked, near, all] = [width, { ...view }, closest, isWhole()];
+    paper = wanted;
+    layout();
+    if (all) return;
+    const scale = looked.scale * (width / before);
+    closest = near && { ...near, scale: near.scale * (width / before) };
+    view = { ...looked, scale };
+    build();
+  }
+
+  /** Cuts off what is empty above and below all that is drawn, for which paper has no room, or shows it again; returns how tall the picture is to its width. */
   function crop(on) {
     const all = [0, height];
     const { d: scale, f: top } = root.getScreenCTM();
@@ -187,6 +204,7 @@ const scene = (() => {
     const [from, to] = on && heights.length
       ? [Math.max(0, Math.min(...heights.map(([y]) => y)) - edge), Math.min(height, Math.max(...heights.map(([, y]) => y)) + edge)] : all;
     setAll(root, { viewBox: `0 ${from.toFixed(1)} ${width} ${(to - from).toFixed(1)}`, height: (to - from).toFixed(1) });
+    return (to - from) / width;
   }
 
   const isWhole = () => view.scale === whole.scale && view.x === whole.x && view.y === whole.y;
@@ -844,6 +862,7 @@ const scene = (() => {
   return {
     draw,
     layout,
+    layoutFor,
     crop,
     zoomBy,
     panBy,

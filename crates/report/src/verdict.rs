@@ -309,7 +309,7 @@ impl Fates {
                 continue;
             }
             if seen.began.is_none() {
-                seen.settle(watched, watch.slope(number, layout, state), layout, number, state);
+                seen.settle((watched, number), watch.slope(number, layout, state), layout, before, state);
             }
             let stance = seen.stance(watched);
             if seen.began.is_some() {
@@ -322,6 +322,8 @@ impl Fates {
                 let (tilt, least) = (q[2] - line, 0.5 * ROCKED * (stance.left.top - stance.right.top));
                 seen.swung = seen.swung.filter(|(_, at)| (tilt - at).abs() < least).or(Some((t, tilt)));
                 let largest = stance.part(q[2], line).filter(|part| seen.part.is_none_or(|most| *part > most));
+                // In the air it turns about its mass centre, not about a foot.
+                let largest = largest.filter(|_| !seen.touched.flies(before, watched));
                 if largest.is_some() {
                     (seen.part, seen.joint) = (largest, seen.tilt.carrier.abs());
                 }

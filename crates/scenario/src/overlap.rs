@@ -121,7 +121,7 @@ impl PlacedOutline {
     }
 
     /// The least displacement that separates the two; at most 0 if they are separate.
-    fn depth(&self, other: &Self) -> f64 {
+    pub(crate) fn depth(&self, other: &Self) -> f64 {
         if self.parts.is_some() || other.parts.is_some() {
             let (mine, others) = (self.cores(), other.cores());
             let pairs = mine.iter().flat_map(|one| others.iter().map(move |other| (one, other)));

@@ -1,6 +1,8 @@
 //! Checks of a scene that can be run but looks wrong: blocks that overturn by themselves, beams
 //! that sag beyond small-deflection theory, steps too coarse for the motion.
 
+mod tilted;
+
 use crate::beam_measures::BeamMeasures;
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
@@ -12,7 +14,7 @@ use crate::{
     deflection, flexibility, mass_ratio, rocking, signal_resolution, stable_step, swing, unused_keys, wording,
 };
 use std::collections::BTreeMap;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{PI, TAU};
 use teeter_beam::{Axial, Beam};
 use teeter_integrator::{ImpactLaw, PairLaw};
 use teeter_text::readable::{shortest, with_digits};
@@ -25,9 +27,6 @@ pub(crate) struct SceneFindings {
     pub(crate) foreseen: Vec<Diagnostic>,
     pub(crate) notes: Vec<Diagnostic>,
 }
-
-/// A tilt of at least this fraction of the critical angle gives a warning.
-const NEAR_CRITICAL: f64 = 0.9;
 
 /// A sag over this fraction of the span gives a warning: deflections are no longer small.
 const DEEP_SAG: f64 = 1.0 / 50.0;
@@ -57,10 +56,8 @@ pub(crate) fn check(scene: &Scene, document: &Document) -> SceneFindings {
 /// The warnings of the checks; `measures` has what earlier scenes have in common with this one.
 pub(crate) fn warnings(scene: &Scene, document: &Document, measures: &BeamMeasures) -> Vec<Diagnostic> {
     let mut warnings = Vec::new();
-    let mut touching = vec![false; scene.blocks.len()];
-    scene.contacts.iter().for_each(|contact| touching[contact.block] = true);
-    for (block, touches) in scene.blocks.iter().zip(touching) {
-        warnings.extend(tilt(block, incline_under(block, scene), touches, document));
+    for (number, block) in scene.blocks.iter().enumerate() {
+        warnings.extend(tilted::warning((number, block), incline_under(block, scene), scene, document));
     }
     warnings.extend(scene.forces.iter().filter_map(|force| without_effect(force, scene, document)));
     for (number, beam) in scene.beams.iter().enumerate() {
@@ -238,38 +235,6 @@ fn without_effect(force: &ForceScene, scene: &Scene, document: &Document) -> Opt
     };
     let rule = format!("has no effect: `{}` {why}", block.name);
     Some(document.error(&format!("force.{}.on", force.name), rule, remedy).as_warning())
-}
-
-/// Warns of a block tilted so far that it may overturn.
-fn tilt(block: &BlockScene, incline: f64, touches: bool, document: &Document) -> Option<Diagnostic> {
-    let table = table_of(document, &block.name);
-    // What is thrown or spins isn't released at rest.
-    if block.velocity != [0.0; 2] || block.spin != 0.0 {
-        return None;
-    }
-    let (key, angle, [flat, alpha]) = match block.placement {
-        Placement::On { tilt, .. } => ("tilt", incline + tilt, [0.0, block.critical_angle()?]),
-        Placement::Free { angle, .. } => {
-            let [flat, alpha] = block.flat_near(angle)?;
-            // In flight any angle is fine, and so is one at random.
-            let is_told = touches && document.is_given(&format!("block.{table}.angle"));
-            if !is_told || (angle - flat).abs() < alpha {
-                return None;
-            }
-            ("angle", angle - flat, [flat, alpha])
-        }
-    };
-    let on_side = (flat / FRAC_PI_2).rem_euclid(2.0) == 1.0;
-    let (ratio, lies) = if on_side { ("height/width", ", which lies on its side") } else { ("width/height", "") };
-    let critical = format!("the critical angle atan({ratio}) = {:.2} deg of this block{lies}", alpha.to_degrees());
-    let rule = if angle.abs() >= alpha {
-        format!("at or beyond {critical}: released at rest it overturns")
-    } else if angle.abs() >= NEAR_CRITICAL * alpha {
-        format!("within 10 % of {critical}: close to overturning")
-    } else {
-        return None;
-    };
-    Some(document.error(&format!("block.{table}.{key}"), rule, "check the angle and its unit").as_warning())
 }
 
 /// A solver tolerance over this gives visibly wrong impulses.
@@ -484,13 +449,17 @@ mod tests {
 
     #[test]
     fn a_block_in_the_air_may_have_any_angle() {
-        let free = |contact: &str| {
+        let free = |height: &str, contact: &str| {
             let text = SCENE
-                .replace("on = 'b'\nat = '50 cm'", "position = ['0.5 m', '2 m']\nangle = '40 deg'")
+                .replace("on = 'b'\nat = '50 cm'", &format!("position = ['0.5 m', '{height}']\nangle = '40 deg'"))
                 .replace("[contact.c]\nbetween = ['k', 'b']\nfriction = 0.5\n", contact);
             crate::load(text.as_bytes(), "f", "f", &[]).unwrap().warnings.len()
         };
-        assert_eq!(free(""), 0);
-        assert_eq!(free("[contact.c]\nbetween = ['k', 'b']\nfriction = 0.5\n"), 1);
+        assert_eq!(free("2 m", ""), 0);
+        let contact = "[contact.c]\nbetween = ['k', 'b']\nfriction = 0.5\n";
+        assert_eq!(free("2 m", contact), 0);
+        // With its lowest corner on the beam.
+        assert_eq!(free("11.124 cm", contact), 1);
+        assert_eq!(free("11.124 cm", ""), 0);
     }
 }

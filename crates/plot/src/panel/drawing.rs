@@ -1,8 +1,9 @@
 //! How a panel is drawn.
 
+use super::bars::draw_bars;
 use super::{Band, Content, NAME_SIZE, Panel, ROW, named_beside, row_height};
 use crate::figure::{Frame, LEFT};
-use crate::legend::{Legend, area_style, mark_path, mark_style, stroke, text_width};
+use crate::legend::{area_style, mark_path, mark_style, stroke, text_width};
 use crate::series::{Dash, Drawn};
 use crate::theme::{Colour, Theme};
 use crate::{Axis, Series, escaped};
@@ -12,8 +13,7 @@ use std::fmt::Write;
 const TICK: f64 = 5.0;
 
 impl Panel {
-    pub(crate) fn draw(&self, svg: &mut String, frame: &Frame, id: &str, legend: Legend, theme: Theme) {
-        legend.draw(svg, theme, frame, &self.entries(), self.note_text().as_deref());
+    pub(crate) fn draw(&self, svg: &mut String, frame: &Frame, id: &str, theme: Theme) {
         match &self.content {
             Content::Plot { y, series } => self.draw_plot(svg, frame, id, theme, y, series),
             Content::Bands { bands, .. } => draw_bands(svg, frame, theme, bands),
@@ -66,6 +66,7 @@ impl Panel {
             let path = cells_path(cells.points(), |x| frame.px(x), py);
             let _ = writeln!(svg, "<path d=\"{path}\" fill=\"{colour}\" stroke=\"none\"/>");
         }
+        draw_bars(svg, &inner, theme, y, series);
         Self::draw_marks(svg, &inner, theme, y, series, true);
         // What is alone in its panel hides no other by filling its range.
         let is_alone = series.len() < 2;
@@ -217,7 +218,7 @@ fn places(frame: &Frame, y: &Axis, series: &[Series]) -> Vec<(f64, f64)> {
                     );
                 }
             }
-            Drawn::Area | Drawn::Cells => {}
+            Drawn::Area | Drawn::Cells | Drawn::Bars => {}
         }
     }
     all

@@ -17,6 +17,8 @@ mod cut;
 mod energies;
 mod forces;
 mod motion;
+mod portraits;
+mod prescribed;
 mod sections;
 mod units;
 

@@ -186,6 +186,11 @@ impl Touched {
         self.last.is_some()
     }
 
+    /// Whether nothing has touched a block in the time before `t`, s, for longer than what rocks hops. Not at the start, before the first step.
+    pub(super) fn flies(&self, t: f64, watched: &Watched) -> bool {
+        self.last.map_or(self.was_free, |last| t - last >= FLIGHT * watched.still_time)
+    }
+
     /// Takes in how high over what carries it a block is at the end of a step, m.
     pub(super) fn rise(&mut self, height: f64) {
         self.now = height;

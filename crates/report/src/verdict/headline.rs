@@ -1,6 +1,7 @@
 //! What became of a scene, in a sentence.
 
 mod rolled;
+mod slid;
 
 use super::carrier::{Driven, driven_below};
 use super::{BodyVerdict, Fate, Going, Side, many};
@@ -8,8 +9,11 @@ use crate::all_digits::{all_digits, with_all_digits};
 use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
 use rolled::{ended_at, so_far, went};
+pub(super) use rolled::{so_far_in_words, way_so_far};
+use slid::beside_slid;
+pub(super) use slid::{slid, up_to};
 use teeter_integrator::State;
-use teeter_scenario::readable::{like, shortest, with_unit};
+use teeter_scenario::readable::{shortest, with_unit};
 use teeter_scenario::scene::{BlockScene, Scene};
 
 /// Blocks up to this many are told one by one.
@@ -177,23 +181,7 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     // It may have flown at a larger angle.
     let since = if of.settled_at().is_some() { " since it settled" } else { "" };
     let largest = largest.map_or_else(String::new, |part| format!("largest φ/α{of_all}{since} {}", self::part(part)));
-    // Both in the unit of the larger.
-    let far = of.slid.into_iter().chain(of.farthest).fold(0.0, |far: f64, way| far.max(way.abs()));
-    let by = |way: f64| format!("{} {}", like(way.abs(), far, "m"), direction(scene, way).way);
-    let both_sides = of.to_and_fro.filter(|reached| reached.iter().all(|way| is_told(scene, of, *way)));
-    let slid = of.slid.map_or_else(String::new, |slid| match of.farthest {
-        _ if both_sides.is_some() => to_both_sides(scene, of, both_sides.unwrap_or_default(), slid),
-        None => format!("slid by {}", by(slid)),
-        Some(farthest) if of.elsewhere.is_some() => format!("slid {}, then {}", by(farthest), by(slid - farthest)),
-        Some(farthest) if !is_told(scene, of, slid) => format!("slid {}, then back to its start", by(farthest)),
-        Some(farthest) => {
-            let side = direction(scene, slid).side;
-            // What ends on the other side, farther from its start than it was before, isn't back there.
-            let back = if farthest * slid < 0.0 && farthest.abs() <= slid.abs() { "" } else { "back " };
-            format!("slid {}, then {back}to {} {side} its start", by(farthest), like(slid.abs(), far, "m"))
-        }
-    });
-    let slid = slid + &beside_slid(scene, of);
+    let slid = slid(scene, of);
     // Angles count from what carries it, in plots from the horizontal.
     let against = of.against.as_ref().map_or_else(String::new, |what| format!(" against {what}"));
     let beside = |text: String| if largest.is_empty() { text } else { format!("{text} ({largest})") };
@@ -330,19 +318,6 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
 /// What goes before how far something went that turned round.
 const TO_AND_FRO: &str = " to and fro";
 
-/// How a block slid to both sides of its start (m) and where it is by that, in words.
-fn to_both_sides(scene: &Scene, of: &BodyVerdict, reached: [f64; 2], slid: f64) -> String {
-    let in_the_end = if of.elsewhere.is_some() {
-        // Hops and flights took it there.
-        String::new()
-    } else if is_told(scene, of, slid) {
-        format!(", in the end {} {} it", with_unit(slid.abs(), "m"), direction(scene, slid).side)
-    } else {
-        ", in the end back at its start".to_owned()
-    };
-    format!("slid{TO_AND_FRO}, {}{in_the_end}", up_to(scene, of, reached))
-}
-
 /// Where a block is that is so far from its start along what carries it (m), in words: what began in flight stood nowhere before.
 fn place(scene: &Scene, of: &BodyVerdict, at: f64) -> String {
     let [start, back] = match of.began_in_flight {
@@ -376,9 +351,6 @@ pub(super) fn on_what_moves(bodies: &[&BodyVerdict]) -> String {
 
 /// Of what tips because nothing held it from the start.
 pub(super) const PAST_EDGE: &str = ", its mass centre past the edge that it stood on from the start";
-
-/// What slid in all by this many times as far as the rest of the sentence says has that told.
-const MORE: f64 = 1.1;
 
 /// The slope of what carries blocks, rad, from which on sliding is told as up or down it.
 const STEEP: f64 = 0.01;
@@ -440,37 +412,6 @@ pub(super) fn moving_base(scene: &Scene, bodies: &[&BodyVerdict]) -> &'static st
 fn side_below(of: &BodyVerdict) -> Option<String> {
     let leans = of.leans_at.map(|phi| format!(" at φ = {}", angle(phi)));
     of.lies_on.as_ref().map(|side| format!(" on its {}", side.word())).or(leans)
-}
-
-/// How far to the left and to the right of its start a block has been (m), in words, as far as that is told.
-fn up_to(scene: &Scene, of: &BodyVerdict, reached: [f64; 2]) -> String {
-    let far = reached.iter().fold(0.0, |far: f64, way| far.max(way.abs()));
-    let by = |way: f64| like(way.abs(), far, "m");
-    if of.elsewhere.is_some() {
-        // Hops and flights took it elsewhere: these ways are not from its start.
-        let told = |way: f64| format!("{} {}", by(way), direction(scene, way).way);
-        let ways: Vec<String> = reached.into_iter().filter(|way| is_told(scene, of, *way)).map(told).collect();
-        return if ways.is_empty() { "where it stands".to_owned() } else { format!("by up to {}", ways.join(" and ")) };
-    }
-    let told = |way: f64| format!("{} {}", by(way), direction(scene, way).side);
-    match reached.map(|way| is_told(scene, of, way).then(|| told(way))) {
-        [Some(left), Some(right)] => format!("up to {left} and {right} its start"),
-        [Some(way), None] | [None, Some(way)] => format!("up to {way} its start"),
-        [None, None] => "near its start".to_owned(),
-    }
-}
-
-/// What is told beside a slide, in words: how far it was to and fro in all, where that is more, and where the block is, if hops and flights took it
-/// there.
-fn beside_slid(scene: &Scene, of: &BodyVerdict) -> String {
-    let slid = of.slid.unwrap_or_default();
-    let told = of.farthest.map_or(slid.abs(), |farthest| farthest.abs() + (slid - farthest).abs());
-    let in_all = of.slid_in_all.filter(|in_all| *in_all > MORE * told && is_told(scene, of, in_all - told));
-    let in_all = in_all.map(|in_all| format!("{} in all", with_unit(in_all, "m")));
-    let how = if of.began_in_flight { "" } else { "with hops and flights " };
-    let place = of.elsewhere.map(|at| format!("{how}{}", place(scene, of, at)));
-    let told: Vec<String> = in_all.into_iter().chain(place).collect();
-    if told.is_empty() { String::new() } else { format!(" ({})", told.join(", ")) }
 }
 
 /// Whether a way along what carries a block, m, is so long that it is told.

@@ -1,7 +1,10 @@
 //! What became of more than a few blocks, in a sentence.
 
-use super::headline::{self, PAST_EDGE, moving_base, on_what_moves, part, time};
+use super::headline::{
+    self, PAST_EDGE, moving_base, on_what_moves, part, slid, so_far_in_words, time, up_to, way_so_far,
+};
 use super::{BodyVerdict, Fate, Going};
+use teeter_scenario::readable::with_unit;
 use teeter_scenario::scene::Scene;
 
 /// How many of these blocks slid before they came to rest, and how many lie, stand or rock on other sides than their bases, in brackets.
@@ -12,6 +15,23 @@ fn how_they_lie(blocks: &[&BodyVerdict]) -> String {
         [(slid, "after sliding"), (over, "on another side than the base")].into_iter().filter(|(count, _)| *count > 0);
     let told: Vec<String> = told.map(|(count, how)| format!("{count} {how}")).collect();
     if told.is_empty() { String::new() } else { format!(" ({})", told.join(", ")) }
+}
+
+/// How far these went at most, each by its own way (m), in words with the one that went farthest; nothing of what hardly did.
+fn farthest(blocks: &[&BodyVerdict], way: impl Fn(&BodyVerdict) -> Option<f64>) -> String {
+    let ways = blocks.iter().filter_map(|of| Some((of, way(of)?)));
+    let most = ways.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, most)| *most > 0.0);
+    most.map_or_else(String::new, |(of, most)| format!(", by up to {} (`{}`)", with_unit(most, "m"), of.body))
+}
+
+/// How far a block is by its slides, m.
+fn slid_by(of: &BodyVerdict) -> Option<f64> {
+    of.slid.map(f64::abs)
+}
+
+/// The farthest from its start that a block slid to and fro, m.
+fn reached(of: &BodyVerdict) -> Option<f64> {
+    of.to_and_fro.map(|[left, right]| left.abs().max(right.abs()))
 }
 
 /// What became of many blocks up to the time `end` (s).
@@ -145,23 +165,39 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
     for going in Going::ALL {
         let these: Vec<_> = usual().filter(|of| of.going == Some(going)).collect();
         let lie = how_they_lie(&these);
-        let what = match these.len() {
-            1 => format!("is {}{lie}", going.word()),
-            _ => format!("are {}{lie}", going.word_of_many()),
+        let what = match these[..] {
+            [one] => format!("is {}{lie}{}", going.word(), so_far_in_words(scene, one)),
+            _ => format!("are {}{lie}{}", going.word_of_many(), farthest(&these, way_so_far)),
         };
         tell(&these, &what, "");
     }
     let sliding: Vec<_> = of(&[Fate::Slid]).into_iter().filter(|of| of.rests_from.is_none()).collect();
     let (stopped, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(|of| of.stopped);
     let stand = if stopped.len() == 1 { "stands" } else { "stand" };
-    tell(&stopped, &format!("slid, and {stand}{}{}", on_what_moves(&stopped), how_they_lie(&stopped)), "");
+    let how = match stopped[..] {
+        [one] if one.to_and_fro.is_none() => format!("{} and", slid(scene, one)),
+        _ => format!("slid{}, and", farthest(&stopped, slid_by)),
+    };
+    tell(&stopped, &format!("{how} {stand}{}{}", on_what_moves(&stopped), how_they_lie(&stopped)), "");
     let shaken = |of: &&BodyVerdict| of.to_and_fro.is_some() && (of.is_driven || of.still_from.is_none());
     let (to_and_fro, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(shaken);
-    tell(&to_and_fro, if to_and_fro.len() == 1 { "slides to and fro" } else { "slide to and fro" }, "");
+    let how = match to_and_fro[..] {
+        [one] => format!("slides to and fro, {}", up_to(scene, one, one.to_and_fro.unwrap_or_default())),
+        _ => format!("slide to and fro{}", farthest(&to_and_fro, reached)),
+    };
+    tell(&to_and_fro, &how, "");
     let (driven, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(|of| of.is_driven);
-    tell(&driven, &format!("slid{}", moving_base(scene, &driven)), "");
+    let how = match driven[..] {
+        [one] => slid(scene, one),
+        _ => format!("slid{}", farthest(&driven, slid_by)),
+    };
+    tell(&driven, &format!("{how}{}", moving_base(scene, &driven)), "");
     let (still, sliding): (Vec<_>, Vec<_>) = sliding.into_iter().partition(|of| of.still_from.is_some());
-    tell(&sliding, if sliding.len() == 1 { "slides on" } else { "slide on" }, "");
+    let how = match sliding[..] {
+        [one] => format!("slides on, {} so far", slid(scene, one)),
+        _ => format!("slide on{}", farthest(&sliding, slid_by)),
+    };
+    tell(&sliding, &how, "");
     let of_moves: Vec<_> =
         of(&[Fate::Moves]).into_iter().filter(|of| of.going.is_none() && of.tips.is_none()).collect();
     let (at_end, moving): (Vec<_>, Vec<_>) = of_moves.into_iter().partition(|of| of.still_from.is_some());

@@ -182,7 +182,14 @@ impl Seen {
     }
 
     /// Of a block that began in flight: whether it has settled with this state, on what has this `slope` (rad), and how it stands then.
-    pub(super) fn settle(&mut self, watched: &Watched, slope: f64, layout: &Layout, number: usize, state: &State) {
+    pub(super) fn settle(
+        &mut self,
+        (watched, number): (&Watched, usize),
+        slope: f64,
+        layout: &Layout,
+        before: f64,
+        state: &State,
+    ) {
         let Some(outline) = &watched.outline else { return };
         let (angle, energy) = (state.q[layout.blocks[number].range.start + 2], watched.kinetic(layout, number, state));
         // No lift is more; most steps of a flight end here.
@@ -213,7 +220,7 @@ impl Seen {
             Settling { since: state.t, angle, part: 0.0, rocked: None }
         });
         let stance = self.stance.0.flatten().unwrap_or(stance);
-        if let Some(part) = stance.part(angle, slope) {
+        if let Some(part) = stance.part(angle, slope).filter(|_| !self.touched.flies(before, watched)) {
             settling.part = settling.part.max(part);
             settling.rocked = if part >= ROCKED { Some(state.t) } else { settling.rocked };
         }

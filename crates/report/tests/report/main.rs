@@ -7,6 +7,8 @@ mod beams;
 mod carriers;
 mod energy;
 mod extremes;
+mod figures;
+mod flights;
 mod headlines;
 mod impacts;
 mod lintel;

@@ -82,6 +82,8 @@ fn a_tangential_force_that_feet_share_in_one_of_many_ways_is_drawn_as_their_sum(
     let svg = figures(&run.page).into_iter().find(|(file, _)| file == "contact_forces.svg").unwrap().1;
     let (_, tangential) = svg.split_once("Tangential force").unwrap();
     assert!(svg.contains("sum over the points"));
+    // In the colour of none of the feet, with a name of its own.
+    assert_eq!(svg.matches(">sum</text>").count(), 1);
     assert_eq!(svg.matches("Tangential force (").count(), 1, "{tangential}");
     // A short rest before a column of drums is shaken is enough for a square wave between the feet of its lowest drum.
     let drums = crate::page::run("drums-at-rest", &scenario_text("column-of-drums"));

@@ -46,6 +46,52 @@ fn what_only_rolls_or_only_skids_has_one_way_told() {
     assert_eq!(skids, told);
 }
 
+/// Of many bodies one that slides or rolls on is told how far, as it is alone; of several the one that went farthest.
+#[test]
+fn what_goes_on_among_many_is_told_how_far() {
+    let scene = |first: f64, friction: f64, second: f64| {
+        let disc = |name: &str, at: f64, velocity: f64| {
+            format!(
+                "[block.{name}]\ndensity = '1100 kg/m^3'\nradius = '5 cm'\ndepth = '5 cm'\non = 'ground'\nat = '{at} m'\n\
+                 velocity = ['{velocity} m/s', '0 m/s']\nspin = '{} rad/s'\n",
+                if friction > 0.0 { -20.0 * velocity } else { 0.0 }
+            )
+        };
+        format!(
+            "[time]\nend = '0.5 s'\nstep = '1 ms'\n[ground]\n{}{}{}[contact.c]\nbetween = ['*', 'ground']\nfriction = {friction}\n",
+            disc("a", 0.0, 0.0),
+            disc("b", 1.0, first),
+            disc("c", 2.0, second)
+        )
+    };
+    let headline = |name: &str, text: &str| run(name, text).summary.headline;
+    let one = headline("one-slides", &scene(0.0, 0.0, 0.4));
+    assert!(one.ends_with("; `c` is still sliding, by 200 mm to the right so far"), "{one}");
+    let one = headline("one-rolls", &scene(0.0, 0.3, 0.4));
+    assert!(one.ends_with("; `c` is still rolling, by 200 mm to the right (229°) so far"), "{one}");
+    let two = headline("two-slide", &scene(-0.6, 0.0, 0.4));
+    assert!(two.ends_with("; 2 are still sliding, by up to 300 mm (`b`)"), "{two}");
+    let box_on = |name: &str, velocity: f64| {
+        format!(
+            "[block.{name}]\ndensity = '1100 kg/m^3'\nwidth = '10 cm'\nheight = '5 cm'\ndepth = '5 cm'\non = 'ground'\nat = '{} m'\n\
+             velocity = ['{velocity} m/s', '0 m/s']\n",
+            f64::from(name.as_bytes()[0])
+        )
+    };
+    let boxes = |second: f64| {
+        format!(
+            "[time]\nend = '0.5 s'\nstep = '1 ms'\n[ground]\n{}{}{}[contact.c]\nbetween = ['*', 'ground']\nfriction = 0.01\n",
+            box_on("a", 0.0),
+            box_on("b", second),
+            box_on("c", 1.0)
+        )
+    };
+    let one = headline("one-box-slides", &boxes(0.0));
+    assert!(one.contains("; `c` slides on, slid by 487") && one.ends_with(" mm to the right so far"), "{one}");
+    let two = headline("two-boxes-slide", &boxes(0.5));
+    assert!(two.contains("; 2 slide on, by up to 487") && two.ends_with(" mm (`c`)"), "{two}");
+}
+
 /// The beam goes up and down by millimetres, which is no slide: nor is the chatter with which bounces on a beam end.
 #[test]
 fn what_a_beam_takes_up_and_down_does_not_slide() {

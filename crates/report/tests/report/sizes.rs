@@ -96,6 +96,25 @@ fn blocks_that_stand_far_apart_are_plotted_from_their_starts() {
     }
 }
 
+/// One of three goes farther than the range in which they stand: the others would be flat lines at their places.
+#[test]
+fn where_most_blocks_hardly_move_all_are_plotted_from_their_starts() {
+    let third = |velocity: &str| {
+        format!(
+            "{}[block.third]\nmaterial = 'm'\nwidth = '20 cm'\nheight = '10 cm'\ndepth = '5 cm'\nposition = ['1 m', '35 cm']\n\
+             velocity = ['{velocity} m/s', '0 m/s']\n",
+            sliding(["0 m", "50 cm"]).replace("'1 m/s', '0 m/s'", "'1 mm/s', '0 m/s'")
+        )
+    };
+    for (velocity, title) in [("3", "Displacement x \u{2212} x₀"), ("0.002", "Displacement x \u{2212} x₀")] {
+        let page = data(&run("most-still", &third(velocity)).html);
+        let x = panel(&page, "x").unwrap();
+        assert_eq!(x["title"], title, "{velocity} m/s");
+        let starts: Vec<f64> = (0..3).map(|k| numbers(&x["series"][k]["y"])[0]).collect();
+        assert!(starts.iter().all(|start| start.abs() < 1e-9), "{starts:?}");
+    }
+}
+
 #[test]
 fn rounding_is_no_loss_of_energy() {
     let text =

@@ -159,21 +159,32 @@ fn a_tilt_beyond_the_critical_angle_is_a_warning_that_names_it() {
 
 #[test]
 fn the_critical_angle_is_that_of_the_side_on_which_a_block_lies() {
-    let warnings = |angle: &str| {
+    // Its lowest corner is on the ground at this height of its centre, which stays so with the angles that warn.
+    let height = |angle: f64| {
+        let (sin, cos) = angle.to_radians().sin_cos();
+        1e2 * (0.5 * 0.03 * sin.abs() + 0.5 * 0.13 * cos.abs())
+    };
+    let warnings_at = |angle: &str, above: f64| {
+        let place = height(angle.split(' ').next().unwrap().parse().unwrap()) + above;
         let text = format!(
             "[time]\nend = '1 s'\nstep = '1 ms'\n[ground]\n[material.a]\ndensity = '2700 kg/m^3'\n[block.b]\nmaterial = 'a'\n\
-             width = '3 cm'\nheight = '13 cm'\ndepth = '3 cm'\nposition = ['0 m', '20 cm']\nangle = '{angle}'\n\
+             width = '3 cm'\nheight = '13 cm'\ndepth = '3 cm'\nposition = ['0 m', '{place:.4} cm']\nangle = '{angle}'\n\
              [contact.floor]\nbetween = ['b', 'ground']\nfriction = 0.5\n"
         );
         let found = teeter_scenario::load(text.as_bytes(), "f", "f", &[]).unwrap().warnings;
         found.iter().map(ToString::to_string).filter(|text| text.contains("critical angle")).collect::<Vec<_>>()
     };
+    let warnings = |angle: &str| warnings_at(angle, 0.0);
     for angle in ["0 deg", "12 deg", "90 deg", "-90 deg", "60 deg", "-50 deg"] {
         assert!(warnings(angle).is_empty(), "{angle}: {:?}", warnings(angle));
     }
     for (angle, named) in [("14 deg", "atan(width/height) = 12.99 deg"), ("-30 deg", "12.99")] {
         let [found] = &warnings(angle)[..] else { panic!("{angle}") };
         says(found, &["block.b.angle", named, "overturns"]);
+    }
+    // In flight it has no foot about which to overturn, however far it falls.
+    for above in [0.2, 12.0] {
+        assert!(warnings_at("14 deg", above).is_empty(), "{above} cm: {:?}", warnings_at("14 deg", above));
     }
     // What is thrown isn't released at rest.
     for key in ["spin = '4 rad/s'", "velocity = ['0.8 m/s', '0 m/s']"] {
@@ -182,7 +193,7 @@ fn the_critical_angle_is_that_of_the_side_on_which_a_block_lies() {
     }
     // A wide one on its narrow side.
     let text = "[time]\nend = '1 s'\nstep = '1 ms'\n[ground]\n[material.a]\ndensity = '2700 kg/m^3'\n[block.b]\nmaterial = 'a'\n\
-         width = '13 cm'\nheight = '3 cm'\ndepth = '3 cm'\nposition = ['0 m', '20 cm']\nangle = '70 deg'\n\
+         width = '13 cm'\nheight = '3 cm'\ndepth = '3 cm'\nposition = ['0 m', '6.621 cm']\nangle = '70 deg'\n\
          [contact.floor]\nbetween = ['b', 'ground']\nfriction = 0.5\n";
     let found = teeter_scenario::load(text.as_bytes(), "f", "f", &[]).unwrap().warnings;
     says(&found[0].to_string(), &["atan(height/width) = 12.99 deg of this block, which lies on its side", "overturns"]);

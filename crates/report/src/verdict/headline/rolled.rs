@@ -3,7 +3,8 @@
 use super::super::BodyVerdict;
 use super::super::going::Going;
 use super::super::rolling::Rolled;
-use super::{MORE, TO_AND_FRO, direction, is_told, place, turns};
+use super::slid::MORE;
+use super::{TO_AND_FRO, direction, is_told, place, turns};
 use teeter_scenario::readable::with_unit;
 use teeter_scenario::scene::Scene;
 
@@ -46,6 +47,22 @@ pub(super) fn so_far(scene: &Scene, of: &BodyVerdict, ways: &Rolled, going: Goin
     // How goes before how far.
     let comma = if on.as_ref().is_some_and(|on| on.starts_with(TO_AND_FRO)) { "" } else { "," };
     on.map_or_else(String::new, |on| format!("{comma}{on} so far"))
+}
+
+/// How far one of many that rolls or slides on has done so, in words; nothing of others.
+pub(in crate::verdict) fn so_far_in_words(scene: &Scene, of: &BodyVerdict) -> String {
+    let told = of.rolled.zip(of.going).map(|(ways, going)| so_far(scene, of, &ways, going));
+    told.unwrap_or_default()
+}
+
+/// How far a round block that rolls or slides on has done so, m.
+pub(in crate::verdict) fn way_so_far(of: &BodyVerdict) -> Option<f64> {
+    let ways = of.rolled?;
+    match of.going? {
+        Going::Rolls => ways.rolled.map(|[at, _]| at.abs()),
+        Going::Slides => ways.skidded.map(f64::abs),
+        _ => None,
+    }
 }
 
 /// Where a round block is, and by how much it has turned, in words, where that doesn't follow from how far it rolled or skidded.
