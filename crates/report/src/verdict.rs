@@ -158,6 +158,8 @@ struct Seen {
     slid_before: Option<[f64; 2]>,
     /// How it has rolled and skidded on what holds it; of a round one.
     rolling: Rolling,
+    /// The same when it was past the end of its beam, or had fallen from its place, while it is.
+    rolled_before: Option<Rolling>,
     /// By how much it turned in the last step, rad; memory.
     #[serde(skip)]
     turn: f64,
@@ -271,6 +273,8 @@ impl Fates {
         for seen in &mut self.blocks {
             let slid = [seen.slides.at(), seen.slides.in_all()];
             seen.slid_before = if seen.is_past() { seen.slid_before.or(Some(slid)) } else { None };
+            let is_away = seen.out.is_some() || seen.dropped.is_some();
+            seen.rolled_before = if is_away { seen.rolled_before.or(Some(seen.rolling)) } else { None };
         }
         self.find_struck(watch, layout, step);
         self.slide(watch, step);

@@ -73,6 +73,11 @@ pub struct BodyVerdict {
     /// How far it has rolled and skidded on what holds it; of a round one.
     #[serde(skip)]
     pub(crate) rolled: Option<Rolled>,
+    /// How far it has since it fell from its place, or left its beam, and what it does of both at the end; `rolled` is up to then.
+    #[serde(skip)]
+    pub(crate) rolled_since: Option<Rolled>,
+    #[serde(skip)]
+    pub(crate) goes_below: Option<Going>,
     /// The farthest that it slid, of one that slid back from there, m; to the right positive. Of one that has then
     /// slid farther past its start, where it turned.
     #[serde(skip_serializing_if = "Option::is_none")]

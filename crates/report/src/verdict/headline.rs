@@ -8,7 +8,7 @@ use super::{BodyVerdict, Fate, Going, Side, many};
 use crate::all_digits::{all_digits, with_all_digits};
 use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
-use rolled::{ended_at, so_far, went};
+use rolled::{below, ended_at, so_far, went};
 pub(super) use rolled::{so_far_in_words, way_so_far};
 use slid::beside_slid;
 pub(super) use slid::{slid, up_to};
@@ -188,7 +188,7 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     // What tumbles slides meanwhile, and after that.
     let then = if of.what == Fate::Slid && of.rests_from.is_some() { "" } else { "then " };
     let tumbled = of.tumbled.map(|turn| format!("tumbled by {}, {then}", turns(turn.abs())));
-    let rolled = of.rolled.and_then(|ways| went(scene, of, &ways)).map(|went| match of.going {
+    let rolled = of.rolled.and_then(|ways| went(scene, of, &ways, of.going)).map(|went| match of.going {
         Some(Going::Rolls | Going::Slides) => format!("{went}, "),
         _ => format!("{went}, {then}"),
     });
@@ -219,17 +219,19 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
                 true => " as the lowest of a column".to_owned(),
                 false => format!(" as one with `{lowest}`"),
             });
-            format!("overturned{with} to the {way}{at}{off}{turned}{then_rested}")
+            let fell = of.fell_at.filter(|fell| of.t.is_some_and(|t| *fell < t));
+            let fell = fell.map_or_else(String::new, |t| format!("fell from its place at {}, ", time(t)));
+            format!("{fell}overturned{with} to the {way}{at}{off}{turned}{then_rested}")
         }
         Fate::Left => {
             let beam = of.left_beam.as_ref().map_or_else(|| "its beam".to_owned(), |name| format!("`{name}`"));
             if of.touches_beam {
                 return format!("tipped over the {way} end of {beam}{at} and still touches it");
             }
-            beside(format!("left {beam} at its {way} end{at}{turned}{then_rested}"))
+            beside(format!("left {beam} at its {way} end{at}{turned}{}{then_rested}", below(scene, of)))
         }
         Fate::Sunk => format!("fell below everything that could hold it{at}"),
-        Fate::Fell => format!("fell from its place{at}{then_rested}"),
+        Fate::Fell => format!("fell from its place{at}{}{then_rested}", below(scene, of)),
         Fate::Rests | Fate::Moves if of.stood_on.is_some() => {
             let since = of.unmoved_from.map_or_else(String::new, |t| format!(", at rest from {}", time(t)));
             let is_round = scene.blocks.iter().any(|block| block.name == of.body && block.base() == 0.0);

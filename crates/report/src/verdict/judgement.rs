@@ -154,6 +154,7 @@ impl Seen {
             place.axial_displacement_at(&state.q[place.range.clone()], 0.0).abs() >= least
         };
         let taken_along = rests == Some(start) && watched.carrier.beam().is_some_and(goes_along);
+        let before = self.rolled_before.filter(|_| matches!(what, Fate::Left | Fate::Fell));
         let beam = |when: bool| watched.carrier.beam().filter(|_| when).map(|beam| layout.beams[beam].name.clone());
         BodyVerdict {
             start,
@@ -178,7 +179,15 @@ impl Seen {
                 .filter(|at| slides.is_some_and(|slides| (at - slides.at()).abs() >= apart)),
             flown: flown.filter(|at| at.abs() >= if began_in_flight { watched.base() } else { least }),
             began_in_flight,
-            rolled: self.rolling.told(watched, watched.centre(layout, number, state) - self.released, turned),
+            rolled: before.as_ref().unwrap_or(&self.rolling).told(
+                watched,
+                watched.centre(layout, number, state) - self.released,
+                turned,
+            ),
+            rolled_since: before.as_ref().and_then(|before| self.rolling.since(before, watched)),
+            goes_below: before
+                .filter(|_| rests.is_none() && self.goes_along(watched, state.t))
+                .map(|_| if self.rolling.rolls { Going::Rolls } else { Going::Slides }),
             to_and_fro: to_and_fro.map(|slides| slides.reached()),
             is_driven: state.t < watched.driven_until,
             stopped,

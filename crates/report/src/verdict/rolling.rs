@@ -62,6 +62,21 @@ impl Fates {
 }
 
 impl Rolling {
+    /// How far a round block went since it had gone `before`; `None` by less than is told.
+    pub(super) fn since(&self, before: &Self, watched: &Watched) -> Option<Rolled> {
+        let least = ROLLED * watched.reach;
+        let since = |now: &Slides, before: &Slides| [now.at() - before.at(), now.in_all() - before.in_all()];
+        let rolled = Some(since(&self.rolled, &before.rolled)).filter(|[_, in_all]| *in_all >= least);
+        let skidded = Some(since(&self.skidded, &before.skidded)).filter(|[_, in_all]| *in_all >= least);
+        (rolled.is_some() || skidded.is_some()).then(|| Rolled {
+            rolled,
+            turned: self.turned - before.turned,
+            skidded: skidded.map(|[at, _]| at),
+            moved: None,
+            turned_in_all: None,
+        })
+    }
+
     /// Whether it has never gone by as much as is told.
     pub(super) fn is_there(&self, watched: &Watched) -> bool {
         self.rolled.most().max(self.skidded.most()) < ROLLED * watched.reach

@@ -111,3 +111,53 @@ fn what_a_beam_takes_up_and_down_does_not_slide() {
     let dropped = run("dropped-on-a-beam", &dropped).summary.headline;
     assert!(dropped.starts_with("`ball` is still trembling where it stands, on a beam that moves"), "{dropped}");
 }
+
+/// What a round block rolls below, after it has fallen, is told after the fall, and that it goes on there.
+#[test]
+fn what_rolls_off_an_edge_has_its_ways_before_and_after_told() {
+    let disc = |on: &str, friction: &str| {
+        format!(
+            "[time]\nend = '2 s'\nstep = '0.5 ms'\n[ground]\n[block.disc]\ndensity = '700 kg/m^3'\nradius = '5 cm'\ndepth = '5 cm'\n\
+             on = '{on}'\nat = '10 cm'\nvelocity = ['0.6 m/s', '0 m/s']\nspin = '-12 rad/s'\n\
+             [contact.c]\nbetween = ['disc', '{on}']\nfriction = 0.4\n[contact.g]\nbetween = ['disc', 'ground']\n{friction}\n"
+        )
+    };
+    let table = "[block.table]\ndensity = '700 kg/m^3'\nwidth = '80 cm'\nheight = '40 cm'\ndepth = '30 cm'\nposition = ['0 cm', '20 cm']\n\
+                 fixed = true\n";
+    let beam = "[beam.shelf]\nspan = '40 cm'\nyoungs_modulus = '210 GPa'\ndensity = '7850 kg/m^3'\nwidth = '4 cm'\nthickness = '2 cm'\n\
+                elements = 4\nsupports = ['clamped', 'free']\nposition = ['0 m', '40 cm']\ndamping_ratio = { mode = 1, ratio = 0.02 }\n";
+    let metres = |text: &str| -> f64 {
+        let (by, _) = text.split_once(" to the right").unwrap();
+        let (number, unit) = by.split_once(' ').unwrap();
+        number.parse::<f64>().unwrap() * if unit == "mm" { 1e-3 } else { 1.0 }
+    };
+    for (name, on, holder, fell) in [
+        ("off-a-table", "table", table, ", then fell from its place at "),
+        ("off-a-beam", "shelf", beam, ", then left `shelf` at its right end at "),
+    ] {
+        let ran = run(name, &format!("{}{holder}", disc(on, "friction = 0.4\nrestitution = 0.4")));
+        let headline = ran.summary.headline;
+        let rows = std::fs::read_to_string(ran.folder.join("trajectory.csv")).unwrap();
+        let x = rows.lines().skip(1).map(|row| row.split(',').nth(1).unwrap().parse::<f64>().unwrap()).last().unwrap();
+        let (before, after) = headline.strip_prefix("`disc` rolled by ").unwrap().split_once(fell).unwrap();
+        // From 10 cm to the edge, 30 cm away: it goes round the edge before it falls.
+        assert!((metres(before) - 0.3).abs() < 0.03, "{name}: {headline}");
+        let (_, on) = after.split_once(", and is still rolling, by ").unwrap();
+        assert!(on.ends_with(" so far"), "{name}: {headline}");
+        // It flew about 17 cm before.
+        let below = x - 0.4;
+        assert!(metres(on) < below && metres(on) > 0.5 * below, "{name}: {headline}; {x}");
+    }
+}
+
+/// A block that slides off a table fell before it turned over.
+#[test]
+fn what_fell_before_it_overturned_is_told_to_have() {
+    let text = "[time]\nend = '1.5 s'\nstep = '0.5 ms'\n[ground]\n[block.table]\ndensity = '700 kg/m^3'\nwidth = '60 cm'\nheight = '50 cm'\n\
+                depth = '30 cm'\nposition = ['0 cm', '25 cm']\nfixed = true\n[block.book]\ndensity = '900 kg/m^3'\nwidth = '20 cm'\nheight = '4 cm'\n\
+                depth = '15 cm'\non = 'table'\nat = '10 cm'\nvelocity = ['1.5 m/s', '0 m/s']\n[contact.a]\nbetween = ['book', 'table']\n\
+                friction = 0.3\n[contact.b]\nbetween = ['book', 'ground']\nfriction = 0.5\nrestitution = 0.2\n";
+    let headline = run("book-off-table", text).summary.headline;
+    assert!(headline.starts_with("`book` fell from its place at t = 28"), "{headline}");
+    assert!(headline.contains(" ms, overturned to the right at t = "), "{headline}");
+}

@@ -24,12 +24,20 @@ fn by(scene: &Scene, at: f64) -> String {
 }
 
 /// How far a round block skidded and rolled, in words, but for what it still does.
-pub(super) fn went(scene: &Scene, of: &BodyVerdict, ways: &Rolled) -> Option<String> {
-    let skidded = ways.skidded.filter(|_| of.going != Some(Going::Slides)).map(|at| skidded(scene, of, at));
-    let rolled = ways.rolled.filter(|_| of.going != Some(Going::Rolls));
+pub(super) fn went(scene: &Scene, of: &BodyVerdict, ways: &Rolled, going: Option<Going>) -> Option<String> {
+    let skidded = ways.skidded.filter(|_| going != Some(Going::Slides)).map(|at| skidded(scene, of, at));
+    let rolled = ways.rolled.filter(|_| going != Some(Going::Rolls));
     let rolled = rolled.map(|rolled| format!("rolled{}", self::rolled(scene, of, rolled, ways.turned)));
     let went: Vec<String> = skidded.into_iter().chain(rolled).collect();
     (!went.is_empty()).then(|| went.join(", "))
+}
+
+/// How far a round block skidded and rolled after it had fallen from its place, or left its beam, in words after that.
+pub(super) fn below(scene: &Scene, of: &BodyVerdict) -> String {
+    let Some(ways) = of.rolled_since else { return String::new() };
+    let went = went(scene, of, &ways, of.goes_below).map(|went| format!(", then {went}"));
+    let on = of.goes_below.map(|going| format!(", and is {}{}", going.word(), so_far(scene, of, &ways, going)));
+    went.into_iter().chain(on).collect()
 }
 
 fn skidded(scene: &Scene, of: &BodyVerdict, at: f64) -> String {
