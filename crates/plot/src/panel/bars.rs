@@ -12,22 +12,20 @@ const THINNEST: f64 = 1.5;
 
 /// Bars of series, without outlines, which would be wider than the bars of short stretches.
 pub(super) fn draw_bars(svg: &mut String, frame: &Frame, theme: Theme, y: &Axis, series: &[Series]) {
-    let of = |series: &Series| series.points().chunks_exact(2).map(|bar| (bar[0].0, bar[1])).collect::<Vec<_>>();
-    let all: Vec<(usize, Vec<(f64, (f64, f64))>)> =
-        series.iter().enumerate().filter(|(_, one)| one.drawn == Drawn::Bars).map(|(k, one)| (k, of(one))).collect();
+    let drawn = || series.iter().enumerate().filter(|(_, one)| one.drawn == Drawn::Bars);
+    let corners = |one: &Series| one.points().chunks_exact(2).map(|bar| [bar[0], bar[1]]).collect::<Vec<_>>();
     // Which of them have a bar that begins there.
     let mut beside: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
-    for (k, bars) in &all {
-        bars.iter().for_each(|(from, _)| beside.entry(from.to_bits()).or_default().push(*k));
+    for (k, one) in drawn() {
+        corners(one).iter().for_each(|[(from, _), _]| beside.entry(from.to_bits()).or_default().push(k));
     }
     let py = |value: f64| frame.top + y.below_high(value, frame.height).clamp(0.0, frame.height);
-    for (k, bars) in &all {
+    for (k, one) in drawn() {
         let mut path = String::new();
-        for &(from, (to, value)) in
-            bars.iter().filter(|(from, (to, _))| frame.x.contains(*from) || frame.x.contains(*to))
-        {
+        let shown = |[(from, _), (to, _)]: &[(f64, f64); 2]| frame.x.contains(*from) || frame.x.contains(*to);
+        for [(from, _), (to, value)] in corners(one).into_iter().filter(shown) {
             let sharing = &beside[&from.to_bits()];
-            let place = sharing.iter().position(|other| other == k).unwrap_or(0) as f64;
+            let place = sharing.iter().position(|other| *other == k).unwrap_or(0) as f64;
             let (a, b, count) = (frame.px(from), frame.px(to), sharing.len() as f64);
             let wide = ((b - a) / count).max(THINNEST);
             let left = 0.5 * (a + b) + (place - 0.5 * count) * wide;
@@ -36,7 +34,7 @@ pub(super) fn draw_bars(svg: &mut String, frame: &Frame, theme: Theme, y: &Axis,
             }
         }
         if !path.is_empty() {
-            let colour = Colour::Series(series[*k].number_at(*k)).value(theme);
+            let colour = Colour::Series(one.number_at(k)).value(theme);
             let _ = writeln!(svg, "<path d=\"{path}\" fill=\"{colour}\" stroke=\"none\"/>");
         }
     }
