@@ -28,7 +28,7 @@ pub(crate) use fallen_beams::{fallen_beams, is_carried};
 use falling::Joints;
 pub(crate) use going::Going;
 use going::Touched;
-pub(crate) use headline::{OfBeams, headline, part, percent};
+pub(crate) use headline::{MORE, OfBeams, headline, part, percent};
 pub use lying::Side;
 use rolling::Rolling;
 use serde::{Deserialize, Serialize};

@@ -87,7 +87,7 @@ impl ContactSolver<2> for Enumeration {
         if problem.contacts() != 1 {
             return solve_several(problem, stop, p);
         }
-        let solution = one_contact::solve(&problem.diagonal(0), &problem.q()[0], problem.mu()[0]);
+        let solution = one_contact::solve_near(&problem.diagonal(0), &problem.q()[0], problem.mu()[0], &p[0]);
         p[0] = solution.unwrap_or(p[0]);
         judged(solution.is_some(), 1, judge(problem, p), stop)
     }

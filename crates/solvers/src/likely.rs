@@ -14,6 +14,7 @@
 
 use crate::enumeration::{BlockTable, ContactState, Impulses, ROUNDING, TREE_CONTACTS};
 use crate::least_norm::{MAX, RANK_TOLERANCE};
+use crate::one_contact::AT_LIMIT;
 use nalgebra::Vector2;
 
 /// Largest number of combinations of states that are tried.
@@ -25,10 +26,6 @@ const MARGIN: f64 = 1e-9;
 
 /// Rounding of a pivot, relative to its magnitude, times the smallest pivot before it.
 const PIVOT_ROUNDING: f64 = 64.0 * f64::EPSILON;
-
-/// A friction impulse above this fraction of its limit counts as sliding, as the initial impulses
-/// have rounding errors.
-const AT_LIMIT: f64 = 1.0 - 1e-9;
 
 /// Impulses and velocities that satisfy the law in likely states, if found, and the number of
 /// combinations tried.

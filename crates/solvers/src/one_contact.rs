@@ -5,6 +5,9 @@ use nalgebra::{Matrix2, Vector2};
 /// Rounding of a closed form, relative to its summed terms.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
+/// A friction impulse above this fraction of its limit counts as sliding, as impulses have rounding errors.
+pub(crate) const AT_LIMIT: f64 = 1.0 - 1e-9;
+
 /// The impulse of one contact with Delassus block `h`, constant vector `q` and friction `mu`; the
 /// smallest one if several satisfy the law (possible for H_NN ≤ μ|H_NT|). `None` if no state is
 /// valid.
@@ -51,6 +54,21 @@ pub(crate) fn solve(h: &Matrix2<f64>, q: &Vector2<f64>, mu: f64) -> Option<Vecto
     best.filter(|p| p.iter().all(|c| c.is_finite()))
 }
 
+/// The same, near the impulse `start`: where several impulses may satisfy the law, a contact that stuck goes on sticking while it can. The
+/// smallest one would let go of what is pressed against its surface as soon as nothing but friction presses it.
+#[inline]
+pub(crate) fn solve_near(h: &Matrix2<f64>, q: &Vector2<f64>, mu: f64, start: &Vector2<f64>) -> Option<Vector2<f64>> {
+    let has_several = h[(0, 0)] <= mu * h[(0, 1)].abs();
+    if has_several && start[1].abs() < mu * start[0] * AT_LIMIT {
+        let determinant = h[(0, 0)] * h[(1, 1)] - h[(0, 1)] * h[(1, 0)];
+        let p = Vector2::new(h[(0, 1)] * q[1] - h[(1, 1)] * q[0], h[(1, 0)] * q[0] - h[(0, 0)] * q[1]) / determinant;
+        if determinant > 0.0 && p[1].abs() < mu * p[0] * AT_LIMIT {
+            return Some(p);
+        }
+    }
+    solve(h, q, mu)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -67,6 +85,20 @@ mod tests {
         let h = Matrix2::new(5.150733870361124, 6.94588824968614, 6.94588824968614, 11.535917081603149);
         let p = solve(&h, &Vector2::new(-0.08123220389856224, -0.11976024561611948), 0.5).unwrap();
         assert!((p - Vector2::new(0.009419670347586858, 0.004709835173793429)).norm() < 1e-14);
+    }
+
+    #[test]
+    fn of_several_solutions_the_one_that_sticks_on_is_taken() {
+        // H_NN < μ H_NT, and nothing but friction presses the contact.
+        let h = Matrix2::new(1.0, 2.0, 2.0, 5.0);
+        let (q, mu) = (Vector2::new(0.1, 0.5), 3.0);
+        let stuck = Vector2::new(1.0, -0.5);
+        assert_eq!(solve_near(&h, &q, mu, &Vector2::zeros()), Some(Vector2::zeros()));
+        let p = solve_near(&h, &q, mu, &stuck).unwrap();
+        assert!((h * p + q).norm() < 1e-15 && p[0] > 0.0 && p[1].abs() < mu * p[0], "{p}");
+        // What slid, or would have to pull, opens.
+        assert_eq!(solve_near(&h, &q, mu, &Vector2::new(1.0, -3.0)), Some(Vector2::zeros()));
+        assert_eq!(solve_near(&h, &Vector2::new(0.1, 0.0), mu, &stuck), Some(Vector2::zeros()));
     }
 
     #[test]

@@ -107,6 +107,8 @@ pub(crate) enum WhyLeftOut {
     FewLandings(usize),
     /// They are against a beam's undeformed axis: against the line between its feet it hardly swung.
     HardlySwings,
+    /// It had not settled yet: what bounces, turns to and fro, too.
+    NotSettled,
 }
 
 /// The half cycles of a run, and of which blocks they are left out.
@@ -196,13 +198,16 @@ pub(crate) fn half_cycles_and_left_out(
         // On rigid contacts one corner stands as the other comes down, unless it bounces or tumbles, which is no rocking.
         let all_kept = recorder.kept.impact_count as usize <= recorder.kept.impacts.len();
         let few = 2 * hits < cycles.len() - own && all_kept && recorder.scenery.touches_rigidly(number);
+        // All of them, as the terminal and the summary count them.
+        let counted = || summary.crossings.iter().filter(|crossing| crossing.body == block.name);
+        let settled = |t: f64| verdict.is_none_or(|verdict| verdict.stands_from.is_some_and(|from| from <= t));
         let why = match () {
             () if few => Some(WhyLeftOut::FewLandings(hits)),
-            () if !passed && recorder.scenery.is_on_beam(number) => Some(WhyLeftOut::HardlySwings),
-            () => None,
+            () if passed || !recorder.scenery.is_on_beam(number) => None,
+            () if counted().any(|crossing| settled(crossing.t)) => Some(WhyLeftOut::HardlySwings),
+            () => Some(WhyLeftOut::NotSettled),
         };
-        // All of them, as the terminal and the summary count them.
-        let count = summary.crossings.iter().filter(|crossing| crossing.body == block.name).count();
+        let count = counted().count();
         if let Some(why) = why.filter(|_| count > 0) {
             cycles.truncate(own);
             left_out.push(LeftOutCycles { body: block.name.clone(), count, why });

@@ -10,6 +10,7 @@ use crate::deflections::LargestDeflection;
 use crate::summary::BorneSummary;
 use rolled::{below, ended_at, so_far, went};
 pub(super) use rolled::{so_far_in_words, way_so_far};
+pub(crate) use slid::MORE;
 use slid::beside_slid;
 pub(super) use slid::{slid, up_to};
 use teeter_integrator::State;

@@ -25,17 +25,20 @@ fn not_listed(left_out: &[LeftOutCycles]) -> String {
             let near = if hits == 0 { "none".to_owned() } else { hits.to_string() };
             Some(format!("{}, with a corner landing near {near} of these", passed(of)))
         }
-        WhyLeftOut::HardlySwings => None,
+        WhyLeftOut::HardlySwings | WhyLeftOut::NotSettled => None,
     });
     let few = few.collect::<Vec<_>>().join("; ");
-    let hardly = left_out.iter().filter(|of| of.why == WhyLeftOut::HardlySwings).map(passed);
-    let hardly = hardly.collect::<Vec<_>>().join("; ");
+    let all = |why: WhyLeftOut| left_out.iter().filter(|of| of.why == why).map(passed).collect::<Vec<_>>().join("; ");
     let told = [
         (few, "where a corner lands near fewer than half of the passages through φ = 0, as of what bounces or tumbles"),
         (
-            hardly,
+            all(WhyLeftOut::HardlySwings),
             "of a block that swings by less than a hundredth of its critical angle against the line between its feet on its beam, though it passes φ = 0 \
              as the summary counts, against the beam’s undeformed axis",
+        ),
+        (
+            all(WhyLeftOut::NotSettled),
+            "of what turns to and fro only before it has settled on its beam, as what bounces does",
         ),
     ];
     let told = told.into_iter().filter(|(bodies, _)| !bodies.is_empty());

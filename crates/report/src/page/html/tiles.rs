@@ -3,7 +3,7 @@
 use super::{scientific, with_code, with_prefix_of};
 use crate::all_digits::with_all_digits;
 use crate::page::content;
-use crate::verdict::{BodyVerdict, ROCKED, part};
+use crate::verdict::{BodyVerdict, MORE, ROCKED, part};
 use crate::{Summary, shortest, with_digits};
 use serde_json::Value;
 use std::fmt::Write;
@@ -98,7 +98,9 @@ fn sliding<'s>(summary: &Summary, slid_on: impl Fn(&str) -> Vec<&'s str>) -> Vec
     let farthest = farthest.filter(|farthest| slid.is_none_or(|slid| *farthest > slid));
     // Where something that goes to and fro is at the end says little.
     let slid = slid.filter(|_| of.to_and_fro.is_none() || farthest.is_none());
-    let in_all = of.slid_in_all.filter(|_| of.to_and_fro.is_some());
+    // It ends on one side of its start, and has slid to both.
+    let in_all =
+        of.slid_in_all.filter(|in_all| of.to_and_fro.is_some() || slid.is_some_and(|slid| *in_all > MORE * slid));
     let whose = if summary.verdict.len() > 1 { format!(" ({})", of.body) } else { String::new() };
     let way = |way: Option<&str>| way.map_or_else(String::new, |way| format!(" {way}"));
     // The sum over all that it slid on.

@@ -71,4 +71,4 @@ pub(super) fn beside_slid(scene: &Scene, of: &BodyVerdict) -> String {
 }
 
 /// What slid in all by this many times as far as the rest of the sentence says has that told.
-pub(super) const MORE: f64 = 1.1;
+pub(crate) const MORE: f64 = 1.1;
