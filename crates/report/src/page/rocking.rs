@@ -4,7 +4,7 @@ use super::PageRecorder;
 use super::recorder::ImpactMark;
 use crate::Summary;
 use crate::summary::PeakRow;
-use crate::verdict::Fate;
+use crate::verdict::{Fate, ROCKED};
 
 /// A passage of a block through φ = 0, between two peaks of its swing. φ is its angle against what carries it: on a beam against the line between
 /// its feet there.
@@ -200,11 +200,12 @@ pub(crate) fn half_cycles_and_left_out(
         let few = 2 * hits < cycles.len() - own && all_kept && recorder.scenery.touches_rigidly(number);
         // All of them, as the terminal and the summary count them.
         let counted = || summary.crossings.iter().filter(|crossing| crossing.body == block.name);
-        let settled = |t: f64| verdict.is_none_or(|verdict| verdict.stands_from.is_some_and(|from| from <= t));
+        let peaks = summary.passages.peaks.iter().filter(|peak| peak.body == block.name);
+        let swing = peaks.map(|peak| peak.phi.abs()).fold(0.0, f64::max);
         let why = match () {
             () if few => Some(WhyLeftOut::FewLandings(hits)),
             () if passed || !recorder.scenery.is_on_beam(number) => None,
-            () if counted().any(|crossing| settled(crossing.t)) => Some(WhyLeftOut::HardlySwings),
+            () if swing < ROCKED * alpha => Some(WhyLeftOut::HardlySwings),
             () => Some(WhyLeftOut::NotSettled),
         };
         let count = counted().count();

@@ -124,8 +124,9 @@ fn what_rolls_off_an_edge_has_its_ways_before_and_after_told() {
     };
     let table = "[block.table]\ndensity = '700 kg/m^3'\nwidth = '80 cm'\nheight = '40 cm'\ndepth = '30 cm'\nposition = ['0 cm', '20 cm']\n\
                  fixed = true\n";
-    let beam = "[beam.shelf]\nspan = '40 cm'\nyoungs_modulus = '210 GPa'\ndensity = '7850 kg/m^3'\nwidth = '4 cm'\nthickness = '2 cm'\n\
-                elements = 4\nsupports = ['clamped', 'free']\nposition = ['0 m', '40 cm']\ndamping_ratio = { mode = 1, ratio = 0.02 }\n";
+    let beam = "[material.steel]\nyoungs_modulus = '210 GPa'\ndensity = '7850 kg/m^3'\n[beam.shelf]\nmaterial = 'steel'\nspan = '40 cm'\n\
+                width = '4 cm'\nthickness = '2 cm'\nelements = 4\nsupports = ['clamped', 'free']\nposition = ['0 m', '40 cm']\n\
+                damping_ratio = { mode = 1, ratio = 0.02 }\n";
     let metres = |text: &str| -> f64 {
         let (by, _) = text.split_once(" to the right").unwrap();
         let (number, unit) = by.split_once(' ').unwrap();
