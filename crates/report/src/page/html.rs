@@ -88,9 +88,12 @@ fn slid_on<'r>(recorder: &'r PageRecorder, panels: &Panels, body: &str) -> Vec<&
         let contact = scenery.contacts.get(panel.of_contact.as_ref()?.0)?;
         let block = &scenery.blocks[contact.block];
         let far = content::largest(panel.lines.iter().flat_map(|line| &line.y));
-        (block.name == body && far >= SLID * block.reach).then_some(contact.surface.as_str())
+        (block.name == body && far >= SLID * block.reach).then_some((contact.surface.as_str(), far))
     });
-    let mut on: Vec<&str> = on.collect();
+    let on: Vec<(&str, f64)> = on.collect();
+    // What it brushed against on its way is not what it slid on.
+    let least = 0.1 * on.iter().fold(0.0, |most: f64, (_, far)| most.max(*far));
+    let mut on: Vec<&str> = on.into_iter().filter(|(_, far)| *far >= least).map(|(surface, _)| surface).collect();
     on.dedup();
     on
 }

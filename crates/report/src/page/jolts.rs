@@ -18,6 +18,9 @@ const MOST_JUMPS: usize = 200;
 /// A load jumps where it changes by more than this part of itself.
 const JUMP: f64 = 0.1;
 
+/// Of transverse forces.
+const PASSAGES: &str = "passages of loads";
+
 impl Jolts {
     pub(super) fn of(recorder: &PageRecorder) -> Self {
         let (impacts, loads) = (impacts(recorder), loads(recorder));
@@ -28,6 +31,28 @@ impl Jolts {
         };
         let mut times = [impacts, loads].concat();
         times.sort_by(f64::total_cmp);
+        Self { times, what }
+    }
+
+    /// The same for transverse forces at these places of beams (number, m), which jump where a moving load passes.
+    pub(super) fn with_passages(&self, recorder: &PageRecorder, places: impl Iterator<Item = (usize, f64)>) -> Self {
+        let passed = |(beam, x): (usize, f64)| {
+            recorder.scenery.loads.iter().filter(move |load| load.beam == beam).filter_map(move |load| {
+                match load.kind {
+                    LoadKind::Moving { at, speed, .. } if speed != 0.0 => Some((x - at) / speed),
+                    _ => None,
+                }
+            })
+        };
+        let passages = places.flat_map(passed).filter(|t| *t > 0.0 && *t < recorder.end);
+        let mut times: Vec<f64> = self.times.iter().copied().chain(passages).collect();
+        times.sort_by(f64::total_cmp);
+        let what = match self.what {
+            _ if times.len() == self.times.len() => self.what,
+            "impacts" if self.times.is_empty() => PASSAGES,
+            "jumps of loads" => "jumps or passages of loads",
+            _ => "impacts, jumps or passages of loads",
+        };
         Self { times, what }
     }
 }
@@ -90,5 +115,24 @@ mod tests {
         let simulation = Simulation::new(&resolved.scene).unwrap();
         let jolts = Jolts::of(&PageRecorder::new(&resolved.scene, &simulation.layout));
         assert_eq!((jolts.times.as_slice(), jolts.what), (&[0.25, 1.0, 1.5][..], "jumps of loads"));
+    }
+
+    #[test]
+    fn a_load_that_passes_a_place_is_a_jolt_of_the_transverse_force_there() {
+        let text = "[time]\nend = '2 s'\nstep = '1 ms'\n[material.steel]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n\
+            [beam.deck]\nmaterial = 'steel'\nspan = '3 m'\nwidth = '10 cm'\nthickness = '2 cm'\nelements = 6\n\
+            [load.cart]\non = 'deck'\nat = '-1 m'\nforce = '-1 kN'\nspeed = '4 m/s'\n\
+            [load.back]\non = 'deck'\nat = '3 m'\nforce = '-1 kN'\nspeed = '-2 m/s'\n";
+        let resolved = teeter_scenario::load(text.as_bytes(), "loads", "loads", &[]).unwrap();
+        let simulation = Simulation::new(&resolved.scene).unwrap();
+        let recorder = PageRecorder::new(&resolved.scene, &simulation.layout);
+        let jolts = Jolts::of(&recorder);
+        assert_eq!(jolts.times, [0.25, 1.0, 1.5]);
+        let passed = jolts.with_passages(&recorder, [(0, 1.0)].into_iter());
+        assert_eq!(
+            (passed.times.as_slice(), passed.what),
+            (&[0.25, 0.5, 1.0, 1.0, 1.5][..], "jumps or passages of loads")
+        );
+        assert_eq!(jolts.with_passages(&recorder, [(1, 1.0)].into_iter()).times, jolts.times);
     }
 }

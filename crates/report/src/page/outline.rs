@@ -150,7 +150,16 @@ mod tests {
         let reach = corners.iter().fold(0.0, |most: f64, c| most.max(c[0].hypot(c[1]) + radius));
         let parts = vec![(corners.len(), radius)];
         let corners = corners.to_vec();
-        BlockDrawn { name: String::new(), corners, parts, upright: false, alpha: None, reach, driven: false }
+        BlockDrawn {
+            name: String::new(),
+            corners,
+            parts,
+            upright: false,
+            alpha: None,
+            reach,
+            driven: false,
+            prescribed: [false; 3],
+        }
     }
 
     const SQUARE: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];

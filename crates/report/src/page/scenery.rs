@@ -36,6 +36,9 @@ pub(crate) struct BlockDrawn {
     pub(crate) reach: f64,
     /// Whether all of its motion is prescribed, as of a fixed wall.
     pub(crate) driven: bool,
+    /// Which of x, y and φ are.
+    #[serde(skip)]
+    pub(crate) prescribed: [bool; 3],
 }
 
 /// A beam as drawn.
@@ -339,6 +342,7 @@ impl Scenery {
             alpha: block.critical_angle(),
             reach: rounded(block.radius(), DIGITS),
             driven: block.motion.is_whole(),
+            prescribed: [0, 1, 2].map(|axis| block.motion.0[axis].is_some()),
         });
         let beams = scene.beams.iter().zip(&layout.beams).map(|(drawn, place)| {
             let (elements, span) = (place.beam.elements(), drawn.spec.span);

@@ -99,3 +99,14 @@ fn a_tile_names_what_a_block_slid_on_where_that_is_several() {
     let one = run("slides-on-one", &text("-1 m").replace("26 mm", "25 mm").replace("2 m/s", "1 m/s")).html;
     assert!(one.contains("<dt>Slid to the right by</dt>"));
 }
+
+/// It leaves the plate that its last millimetres lie on, and slides on the ground for a metre.
+#[test]
+fn a_tile_names_nothing_that_a_block_only_brushed_against() {
+    let text = "[time]\nend = '1 s'\nstep = '500 us'\n[ground]\n[block.plate]\ndensity = '2400 kg/m^3'\nwidth = '40 cm'\nheight = '1 mm'\n\
+        depth = '10 cm'\nposition = ['0 m', '0.5 mm']\nfixed = true\n[block.box]\ndensity = '700 kg/m^3'\nwidth = '12 cm'\nheight = '5 cm'\n\
+        depth = '10 cm'\nposition = ['25.5 cm', '26 mm']\nvelocity = ['2 m/s', '0 m/s']\n[contact.floor]\nbetween = ['box', 'ground']\n\
+        friction = 0.2\n[contact.plate]\nbetween = ['box', 'plate']\nfriction = 0.2\n";
+    let html = run("brushed-a-plate", text).html;
+    assert!(html.contains("<dt>Slid to the right by</dt>"));
+}

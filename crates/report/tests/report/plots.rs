@@ -525,3 +525,16 @@ fn energies_on_the_page_are_those_of_the_table_to_a_millionth_of_their_range() {
     let lost = (total[total.len() - 1] - total[0]) * per_joule;
     assert!((y[y.len() - 1] - y[0] - lost).abs() <= 2e-6 * (high - low), "{} {lost}", y[y.len() - 1] - y[0]);
 }
+
+/// A disc on a table that is shaken: each portrait is of the disc, and says so, as the other one could be another block's.
+#[test]
+fn what_is_prescribed_has_no_portrait() {
+    let text = "[time]\nend = '1 s'\nstep = '1 ms'\n[block.table]\ndensity = '700 kg/m^3'\nwidth = '4 m'\nheight = '40 cm'\ndepth = '30 cm'\n\
+        position = ['0 cm', '20 cm']\nmotion = { acceleration = ['2 m/s^2', '0 m/s^2'], angle = '0 deg', signal = 's' }\n[signal.s]\nshape = 'harmonic'\n\
+        frequency = '2 Hz'\n[block.disc]\ndensity = '700 kg/m^3'\nradius = '5 cm'\ndepth = '5 cm'\non = 'table'\nat = '0 cm'\n\
+        [contact.c]\nbetween = ['disc', 'table']\nfriction = 0.4\n";
+    let page = data(&run("portraits-on-table", text).html);
+    let titles = page["portraits"].as_array().unwrap().iter().map(|portrait| portrait["title"].as_str().unwrap());
+    let titles: Vec<&str> = titles.collect();
+    assert_eq!(titles, ["Phase portrait of disc: ω over φ"]);
+}

@@ -37,8 +37,10 @@ impl Panels {
         let others_rock = (0..recorder.scenery.blocks.len()).any(rocks);
         let choice = |k: usize| {
             let reach = recorder.scenery.blocks[k].reach;
-            let [x, y, turn] = [0, 1, PHI].map(|c| moves(k, c));
-            let [across, up] = [0, 1].map(|c| self.carried_travel(recorder, k, c));
+            // What is prescribed would have the portrait of its signal.
+            let free = recorder.scenery.blocks[k].prescribed.map(|prescribed| if prescribed { 0.0 } else { 1.0 });
+            let [x, y, turn] = [0, 1, PHI].map(|c| free[c] * moves(k, c));
+            let [across, up] = [0, 1].map(|c| free[c] * self.carried_travel(recorder, k, c));
             // Beside what rocks, a ball has its way in its portrait, as its turns would stretch the axis.
             let rolls = turn > PI && others_rock;
             if !rolls && holds(turn, 1.0) && turn * reach >= TURNS * across.max(up) {
@@ -106,9 +108,14 @@ impl Panels {
                 count => Some(format!("{count} curves coincide, wholly or in part")),
             };
             let notes: Vec<String> = strong.into_iter().chain(coincide).collect();
+            // A single curve has no legend, and another portrait may be another block's.
+            let whose = match &lines[..] {
+                [line] if recorder.scenery.blocks.len() > 1 => format!(" of {}", line.label),
+                _ => String::new(),
+            };
             let portrait = Portrait {
                 id: ["phase_x", "phase_y", "phase"][c],
-                title: format!("Phase portrait: {} over {}", coordinate.velocity_symbol, coordinate.symbol),
+                title: format!("Phase portrait{whose}: {} over {}", coordinate.velocity_symbol, coordinate.symbol),
                 x_label: format!("{}{on}", coordinate.name),
                 y_label: format!("{}{on}", coordinate.velocity_name),
                 x_unit: units[0].to_owned(),

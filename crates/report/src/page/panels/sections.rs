@@ -81,7 +81,13 @@ impl Panels {
             } else {
                 drawn.iter().map(|(column, ..)| self.curves.means(*column)).collect()
             };
-            let filter = Filter::of(&self.curves, &jolts, &means);
+            let filter = match kind {
+                Kind::Shear => {
+                    let places = drawn.iter().filter_map(|(.., column)| Some((column.beam, column.x?)));
+                    Filter::of(&self.curves, &jolts.with_passages(recorder, places), &means)
+                }
+                _ => Filter::of(&self.curves, &jolts, &means),
+            };
             let (mut lines, mut over) = (Vec::new(), Vec::new());
             for (column, label, number, _, Column { beam, x, .. }) in drawn {
                 let mean = match kind {
