@@ -93,7 +93,7 @@ export async function idleOnPaper(page) {
     let above = "";
     for (const panel of [...document.querySelectorAll("#plots .panel")].filter(isSeen)) {
       const legend = panel.querySelector(".head > .legend");
-      const colours = legend ? [...legend.querySelectorAll("path")].map((one) => one.style.stroke || one.style.fill) : [];
+      const colours = legend ? [...legend.querySelectorAll("path")].filter(isSeen).map((one) => one.style.stroke || one.style.fill) : [];
       const text = legend && isSeen(legend) ? `${legend.innerText.trim().split(/\s*\n\s*/).join(", ")} ${colours.join(" ")}`.trim() : "";
       if (text && text === above) problems.push(`${panel.id} repeats the legend ${text}`);
       if (text) above = text;
