@@ -423,15 +423,10 @@ impl<const D: usize, M: StepMotion<D>> ClosedStep<D, M> {
         }
     }
 
-    /// Forgets the closed contacts that have opened by the end of the step: what strikes there doesn't press them.
-    pub(crate) fn forget_what_opened(&mut self) {
-        let Self { closed, stage, stays, step, .. } = self;
-        for (i, contact) in stage.contacts().iter().enumerate() {
-            let opened = !stays[i] && leaves(contact.u_after[0], || stage.speed(i, step.v_end()));
-            if opened && let Ok(at) = closed.binary_search(&contact.id) {
-                closed.remove(at);
-            }
-        }
+    /// Whether a contact of the last solve has opened by the end of the step, beyond rounding.
+    pub(crate) fn has_opened(&self, i: usize) -> bool {
+        let contact = &self.stage.contacts()[i];
+        !self.stays[i] && leaves(contact.u_after[0], || self.stage.speed(i, self.step.v_end()))
     }
 
     /// Finds the impulses of the closed contacts: leaves v¹ in the step.

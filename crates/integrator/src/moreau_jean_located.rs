@@ -481,6 +481,20 @@ impl<const D: usize> MoreauJeanLocated<D> {
         Ok(())
     }
 
+    /// Forgets the closed contacts that have opened by the end of the part: what strikes there doesn't press them. On a beam they chatter, and go
+    /// on counting as closed, as they do from step to step.
+    fn forget_what_opened(&mut self, model: &Model<D>) {
+        for i in 0..self.step.stage.len() {
+            let Contact { id, sides, .. } = self.step.stage.contacts()[i];
+            if self.step.has_opened(i)
+                && !self.is_with_elastic(model, &sides.map(|side| side.body))
+                && let Ok(at) = self.step.closed.binary_search(&id)
+            {
+                self.step.closed.remove(at);
+            }
+        }
+    }
+
     /// Ends the part of the step that was attempted, and moves on to its end.
     fn take_part(
         &mut self,
@@ -491,7 +505,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
         work: &mut Workspace<D>,
     ) -> Result<(), StepError> {
         self.step.find_what_stays();
-        self.step.forget_what_opened();
+        self.forget_what_opened(model);
         self.stays.clear();
         let contacts = self.step.stage.contacts().iter().zip(&self.step.stays);
         // A pressed spring is kept for the contact that takes it over.
