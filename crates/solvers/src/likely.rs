@@ -14,7 +14,7 @@
 
 use crate::enumeration::{BlockTable, ContactState, Impulses, ROUNDING, TREE_CONTACTS};
 use crate::least_norm::{MAX, RANK_TOLERANCE};
-use crate::one_contact::AT_LIMIT;
+use crate::one_contact::{AT_LIMIT, sticking};
 use nalgebra::Vector2;
 
 /// Largest number of combinations of states that are tried.
@@ -72,10 +72,8 @@ fn alone(table: &BlockTable, i: usize) -> ContactState {
     if mu == 0.0 {
         return ContactState::Slide(1.0);
     }
-    // The sticking impulse times the determinant.
-    let p_n = h[(0, 1)] * q[1] - h[(1, 1)] * q[0];
-    let p_t = h[(1, 0)] * q[0] - h[(0, 0)] * q[1];
-    if p_t.abs() <= mu * p_n { ContactState::Stick } else { slide_against(p_t) }
+    let p = sticking(h, q);
+    if p[1].abs() <= mu * p[0] { ContactState::Stick } else { slide_against(p[1]) }
 }
 
 enum LikelyCheck {

@@ -29,11 +29,11 @@ pub(crate) fn solve(h: &Matrix2<f64>, q: &Vector2<f64>, mu: f64) -> Option<Vecto
             best = Some(p);
         }
     };
-    let determinant = h[(0, 0)] * h[(1, 1)] - h[(0, 1)] * h[(1, 0)];
+    let determinant = h.determinant();
     if determinant != 0.0 && mu > 0.0 {
-        let (normal, tangent) = ([h[(0, 1)] * q[1], h[(1, 1)] * q[0]], [h[(1, 0)] * q[0], h[(0, 0)] * q[1]]);
-        let p = Vector2::new((normal[0] - normal[1]) / determinant, (tangent[0] - tangent[1]) / determinant);
-        let size = tangent[0].abs() + tangent[1].abs() + mu * (normal[0].abs() + normal[1].abs());
+        let p = sticking(h, q) / determinant;
+        let (h, q) = (h.abs(), q.abs());
+        let size = h[(1, 0)] * q[0] + h[(0, 0)] * q[1] + mu * (h[(0, 1)] * q[1] + h[(1, 1)] * q[0]);
         let limit = mu * p[0];
         if p[0] >= 0.0 && p[1].abs() <= limit + ROUNDING * size / determinant.abs() {
             offer(Vector2::new(p[0], p[1].clamp(-limit, limit)));
@@ -60,13 +60,19 @@ pub(crate) fn solve(h: &Matrix2<f64>, q: &Vector2<f64>, mu: f64) -> Option<Vecto
 pub(crate) fn solve_near(h: &Matrix2<f64>, q: &Vector2<f64>, mu: f64, start: &Vector2<f64>) -> Option<Vector2<f64>> {
     let has_several = h[(0, 0)] <= mu * h[(0, 1)].abs();
     if has_several && start[1].abs() < mu * start[0] * AT_LIMIT {
-        let determinant = h[(0, 0)] * h[(1, 1)] - h[(0, 1)] * h[(1, 0)];
-        let p = Vector2::new(h[(0, 1)] * q[1] - h[(1, 1)] * q[0], h[(1, 0)] * q[0] - h[(0, 0)] * q[1]) / determinant;
+        let determinant = h.determinant();
+        let p = sticking(h, q) / determinant;
         if determinant > 0.0 && p[1].abs() < mu * p[0] * AT_LIMIT {
             return Some(p);
         }
     }
     solve(h, q, mu)
+}
+
+/// The impulse −H⁻¹ q with which a contact sticks, times the determinant of H.
+#[inline]
+pub(crate) fn sticking(h: &Matrix2<f64>, q: &Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(h[(0, 1)] * q[1] - h[(1, 1)] * q[0], h[(1, 0)] * q[0] - h[(0, 0)] * q[1])
 }
 
 #[cfg(test)]

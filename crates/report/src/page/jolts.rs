@@ -1,7 +1,7 @@
 //! When what beams carry is jolted: forces change at once then, and a mean that reached across would change before.
 
 use super::recorder::{PARTS, PageRecorder};
-use teeter_scenario::scene::{History, LoadKind};
+use teeter_scenario::scene::{History, LoadKind, LoadScene};
 
 /// The times of jolts.
 #[derive(Debug, Clone, Default)]
@@ -17,9 +17,6 @@ const MOST_JUMPS: usize = 200;
 
 /// A load jumps where it changes by more than this part of itself.
 const JUMP: f64 = 0.1;
-
-/// Of transverse forces.
-const PASSAGES: &str = "passages of loads";
 
 impl Jolts {
     pub(super) fn of(recorder: &PageRecorder) -> Self {
@@ -37,19 +34,15 @@ impl Jolts {
     /// The same for transverse forces at these places of beams (number, m), which jump where a moving load passes.
     pub(super) fn with_passages(&self, recorder: &PageRecorder, places: impl Iterator<Item = (usize, f64)>) -> Self {
         let passed = |(beam, x): (usize, f64)| {
-            recorder.scenery.loads.iter().filter(move |load| load.beam == beam).filter_map(move |load| {
-                match load.kind {
-                    LoadKind::Moving { at, speed, .. } if speed != 0.0 => Some((x - at) / speed),
-                    _ => None,
-                }
-            })
+            let loads = recorder.scenery.loads.iter().filter(move |load| load.beam == beam);
+            loads.filter_map(move |load| passage(load, x))
         };
         let passages = places.flat_map(passed).filter(|t| *t > 0.0 && *t < recorder.end);
         let mut times: Vec<f64> = self.times.iter().copied().chain(passages).collect();
         times.sort_by(f64::total_cmp);
         let what = match self.what {
             _ if times.len() == self.times.len() => self.what,
-            "impacts" if self.times.is_empty() => PASSAGES,
+            "impacts" if self.times.is_empty() => "passages of loads",
             "jumps of loads" => "jumps or passages of loads",
             _ => "impacts, jumps or passages of loads",
         };
@@ -79,14 +72,17 @@ fn loads(recorder: &PageRecorder) -> Vec<f64> {
     };
     let forces = scenery.forces.iter().filter(|force| on_beams(force.block)).map(|force| &force.history);
     let histories = forces.chain(scenery.loads.iter().map(|load| &load.history));
-    let ends = scenery.loads.iter().filter_map(|load| match load.kind {
-        LoadKind::Moving { at, speed, .. } if speed != 0.0 => {
-            Some([-at / speed, (scenery.beams[load.beam].span - at) / speed])
-        }
-        _ => None,
-    });
+    let ends = scenery.loads.iter().flat_map(|load| [0.0, scenery.beams[load.beam].span].map(|end| passage(load, end)));
     let times = histories.flat_map(|history| jumps(history, recorder.end)).chain(ends.flatten());
     times.filter(|t| *t > 0.0 && *t < recorder.end).collect()
+}
+
+/// When a load that moves passes a place of its beam (m), s.
+fn passage(load: &LoadScene, x: f64) -> Option<f64> {
+    match load.kind {
+        LoadKind::Moving { at, speed, .. } if speed != 0.0 => Some((x - at) / speed),
+        _ => None,
+    }
 }
 
 fn jumps(history: &History, end: f64) -> Vec<f64> {

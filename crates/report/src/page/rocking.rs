@@ -107,7 +107,7 @@ pub(crate) enum WhyLeftOut {
     FewLandings(usize),
     /// They are against a beam's undeformed axis: against the line between its feet it hardly swung.
     HardlySwings,
-    /// It had not settled yet: what bounces, turns to and fro, too.
+    /// It had not settled yet: a block that bounces turns to and fro, too.
     NotSettled,
 }
 
@@ -198,17 +198,18 @@ pub(crate) fn half_cycles_and_left_out(
         // On rigid contacts one corner stands as the other comes down, unless it bounces or tumbles, which is no rocking.
         let all_kept = recorder.kept.impact_count as usize <= recorder.kept.impacts.len();
         let few = 2 * hits < cycles.len() - own && all_kept && recorder.scenery.touches_rigidly(number);
-        // All of them, as the terminal and the summary count them.
-        let counted = || summary.crossings.iter().filter(|crossing| crossing.body == block.name);
-        let peaks = summary.passages.peaks.iter().filter(|peak| peak.body == block.name);
-        let swing = peaks.map(|peak| peak.phi.abs()).fold(0.0, f64::max);
+        let swings = || {
+            let mut peaks = summary.passages.peaks.iter().filter(|peak| peak.body == block.name);
+            peaks.any(|peak| peak.phi.abs() >= ROCKED * alpha)
+        };
         let why = match () {
             () if few => Some(WhyLeftOut::FewLandings(hits)),
             () if passed || !recorder.scenery.is_on_beam(number) => None,
-            () if swing < ROCKED * alpha => Some(WhyLeftOut::HardlySwings),
-            () => Some(WhyLeftOut::NotSettled),
+            () if swings() => Some(WhyLeftOut::NotSettled),
+            () => Some(WhyLeftOut::HardlySwings),
         };
-        let count = counted().count();
+        // All of them, as the terminal and the summary count them.
+        let count = summary.crossings.iter().filter(|crossing| crossing.body == block.name).count();
         if let Some(why) = why.filter(|_| count > 0) {
             cycles.truncate(own);
             left_out.push(LeftOutCycles { body: block.name.clone(), count, why });

@@ -73,9 +73,10 @@ pub struct BodyVerdict {
     /// How far it has rolled and skidded on what holds it; of a round one.
     #[serde(skip)]
     pub(crate) rolled: Option<Rolled>,
-    /// How far it has since it fell from its place, or left its beam, and what it does of both at the end; `rolled` is up to then.
+    /// How far it has since it fell from its place or left its beam; `rolled` ends there.
     #[serde(skip)]
     pub(crate) rolled_since: Option<Rolled>,
+    /// Whether it still rolls or slides below at the end.
     #[serde(skip)]
     pub(crate) goes_below: Option<Going>,
     /// The farthest that it slid, of one that slid back from there, m; to the right positive. Of one that has then

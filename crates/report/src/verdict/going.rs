@@ -140,9 +140,7 @@ impl Fates {
             else {
                 continue;
             };
-            let flight = FLIGHT * watched.still_time;
-            let flew = touched.last.map_or(touched.was_free, |last| step.t_start - last >= flight);
-            if flew && touched.last != Some(t) {
+            if touched.flies(step.t_start, watched) && touched.last != Some(t) {
                 touched.landed_before = touched.landed.replace(t);
                 touched.flown = step.t_start - touched.last.unwrap_or(0.0);
                 touched.rose = if touched.last.is_some() { touched.strayed() } else { f64::INFINITY };

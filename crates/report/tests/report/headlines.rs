@@ -38,10 +38,10 @@ fn why_a_block_on_a_beam_has_no_half_cycles_is_told() {
     assert!(beside.html.contains(&told), "{told}");
 }
 
-/// A cube that is dropped near the end of a cantilever bounces, and turns by degrees as it does.
+/// A cube that is dropped near the end of a cantilever bounces, and turns by degrees as it does; 0.2 s later it still does, whatever the step.
 #[test]
 fn why_what_bounces_on_a_beam_has_no_half_cycles_is_told() {
-    let text = "[time]\nend = '0.5 s'\nstep = '100 us'\n[material.steel]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n[beam.shelf]\n\
+    let text = "[time]\nend = '0.2 s'\nstep = '100 us'\n[material.steel]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n[beam.shelf]\n\
         material = 'steel'\nspan = '60 cm'\nwidth = '4 cm'\nthickness = '6 mm'\nelements = 24\nsupports = ['clamped', 'free']\n\
         damping_ratio = { mode = 1, ratio = 0.02 }\n[block.cube]\ndensity = '2000 kg/m^3'\nwidth = '4 cm'\nheight = '4 cm'\ndepth = '4 cm'\n\
         position = ['50 cm', '7 cm']\n[contact.c]\nbetween = ['cube', 'shelf']\nfriction = 0.4\nrestitution = 0.3\n";
