@@ -546,6 +546,30 @@ mod tests {
         }
     }
 
+    /// A body that stands on rough ground is struck: the ground keeps it, or its friction there lifts it. Both satisfy the law.
+    #[test]
+    fn what_stood_before_a_blow_stands_on_whatever_rounding_its_velocity_has() {
+        let block = |a, b, c, d| Matrix2::new(a, b, c, d);
+        let h = [
+            block(0.05718, -0.01036, -0.01036, 0.18947),
+            block(-0.00734, -0.02742, -0.02195, 0.02975),
+            block(-0.00734, -0.02195, -0.02742, 0.02975),
+            block(0.05085, -0.02569, -0.02569, 0.05089),
+        ];
+        for rounding in [-1e-8, 0.0, 1e-8] {
+            let q = [Vector2::new(-2.83275, 6.31221), Vector2::new(rounding, 10.0 * rounding)];
+            let problem = ContactProblem::new(Delassus::Dense(&h), &q, &[5.0, 5.0]).unwrap();
+            let stood = [Vector2::zeros(), Vector2::new(2e-3, 9e-4)];
+            for (start, presses) in [(stood, true), ([Vector2::new(1.0, -0.7), Vector2::zeros()], false)] {
+                let mut p = start;
+                let outcome = Enumeration::new().solve(&problem, &Stop::default(), &mut p);
+                assert!(outcome.converged(), "{outcome:?}");
+                assert_eq!(p[1][0] > 40.0, presses, "{rounding}: {p:?}");
+                assert!(presses || p[1] == Vector2::zeros());
+            }
+        }
+    }
+
     #[test]
     fn more_than_five_contacts_give_a_breakdown() {
         let feet = [(-0.5, -1.0), (-0.2, -1.0), (-0.1, -1.0), (0.2, -1.0), (0.4, -1.0), (0.5, -1.0)];

@@ -24,6 +24,10 @@ const TRIES: u32 = 6;
 /// rounding, so that no neighbouring state is valid as well.
 const MARGIN: f64 = 1e-9;
 
+/// A contact that would pull to part more slowly than this, in parts of the largest velocity, opens only when the others are in
+/// their states.
+const SLIGHT: f64 = 1e-6;
+
 /// Rounding of a pivot, relative to its magnitude, times the smallest pivot before it.
 const PIVOT_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
@@ -117,7 +121,10 @@ fn check(table: &BlockTable, states: &mut [ContactState; TREE_CONTACTS], p: &Imp
         let size_p = size[0] / table.h[i][i][(0, 0)];
         tight |= u[0].abs() > ROUNDING * size[0] || p[i][0] < MARGIN * size_p;
         if p[i][0] < 0.0 {
-            (states[i], changed) = (ContactState::Open, true);
+            let speed = table.q[..n].iter().map(Vector2::amax).fold(0.0, f64::max);
+            if p[i][0] < -SLIGHT * speed / table.h[i][i][(0, 0)] {
+                (states[i], changed) = (ContactState::Open, true);
+            }
             continue;
         }
         match state {
@@ -133,6 +140,14 @@ fn check(table: &BlockTable, states: &mut [ContactState; TREE_CONTACTS], p: &Imp
                 }
             }
             _ => {}
+        }
+    }
+    // What is at rest beside a blow pulls by rounding: first see what the blow does to it.
+    if !changed {
+        for i in 0..n {
+            if states[i] != ContactState::Open && p[i][0] < 0.0 {
+                (states[i], changed) = (ContactState::Open, true);
+            }
         }
     }
     if changed {

@@ -98,11 +98,15 @@ impl EventDriven {
             self.ids.extend(self.smooth.contacts.iter().map(|contact| contact.id));
             from.memory.forget_contacts();
             self.ids.iter().for_each(|id| from.memory.activate(*id));
+            // Where several impulses satisfy the law, contacts go on as they did: it takes no more than the states that forces tell.
+            from.warm.clear();
+            self.smooth.contacts.iter().for_each(|contact| from.warm.push(contact.id, &contact.force));
             // U²/2a is the height of a bounce.
             let height = LOWEST_BOUNCE * self.located.tolerance(&from.q);
             let time = (2.0 * height / fastest).sqrt();
             let by_forces = self.smooth.a.iter().map(|a| time * a);
             self.located.strike_by(model, from, &self.ids, by_forces, &self.in_lowest_bounce, work)?;
+            from.warm.clear();
             self.smooth.accelerate_freely(model, t, &from.q, &from.v, work)?;
         }
         self.returning.clear();
