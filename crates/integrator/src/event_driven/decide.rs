@@ -12,6 +12,9 @@ use teeter_detect::Candidate;
 /// What [`EventDriven::touching_gap`] is in tolerances of a gap.
 const TOUCHING: f64 = 10.0;
 
+/// What turns round within so many tolerances of a gap doesn't strike: the time of a touch is known to that.
+const GRAZING: f64 = 4.0;
+
 /// A tangential acceleration below this part of what it consists of is none.
 const NONE: f64 = 1e-8;
 
@@ -98,13 +101,13 @@ impl EventDriven {
             self.ids.extend(self.smooth.contacts.iter().map(|contact| contact.id));
             from.memory.forget_contacts();
             self.ids.iter().for_each(|id| from.memory.activate(*id));
-            // Where several impulses satisfy the law, contacts go on as they did: it takes no more than the states that forces tell.
-            from.warm.clear();
-            self.smooth.contacts.iter().for_each(|contact| from.warm.push(contact.id, &contact.force));
             // U²/2a is the height of a bounce.
             let height = LOWEST_BOUNCE * self.located.tolerance(&from.q);
             let time = (2.0 * height / fastest).sqrt();
             let by_forces = self.smooth.a.iter().map(|a| time * a);
+            // Where several impulses satisfy the law, contacts go on as they did.
+            from.warm.clear();
+            self.smooth.contacts.iter().for_each(|contact| from.warm.push(contact.id, &(contact.force * time)));
             self.located.strike_by(model, from, &self.ids, by_forces, &self.in_lowest_bounce, work)?;
             from.warm.clear();
             self.smooth.accelerate_freely(model, t, &from.q, &from.v, work)?;
@@ -139,6 +142,7 @@ impl EventDriven {
         let (mut approaches, mut fastest) = (false, f64::MIN_POSITIVE);
         let instant = self.instant(from);
         let height = LOWEST_BOUNCE * self.located.tolerance(&from.q);
+        let grazing = GRAZING * self.located.tolerance(&from.q);
         self.in_lowest_bounce.clear();
         let smooth = &mut self.smooth;
         for candidate in &self.touching {
@@ -153,6 +157,8 @@ impl EventDriven {
             fastest = a.abs().max(rounding).max(fastest);
             self.in_lowest_bounce.push((candidate.id, -velocity_after(height, -a)));
             let slow = still(smooth.stage.speed(0, &from.v), smooth.stage.speed(0, &smooth.a), instant);
+            // What turns round before it is inside only grazes, as a rounding does where the side before it has slid past.
+            let slow = slow.max(velocity_after(grazing, a));
             approaches |= smooth.stage.velocity(0, &from.v)?[0] < -slow;
         }
         Ok(approaches.then_some(fastest))

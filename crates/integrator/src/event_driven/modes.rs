@@ -103,6 +103,14 @@ impl Pressing {
         }
     }
 
+    /// Its friction in parts of its normal force; 0 where it sticks, and it isn't known.
+    pub(super) fn slope(&self) -> f64 {
+        match self.mode {
+            Mode::Stick => 0.0,
+            Mode::Slide(sign) => -self.friction * sign,
+        }
+    }
+
     /// Its velocity along its slide, m/s; infinity where it sticks, or nothing holds it.
     pub(super) fn slides(&self) -> f64 {
         match self.mode {

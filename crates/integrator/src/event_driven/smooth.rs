@@ -346,12 +346,9 @@ impl Smooth {
     /// The same where all is known of the contacts. Of several distributions that with the least sum
     /// of squares is taken, tangential ones by the given weights.
     fn solve_forces(&mut self, weight: impl Fn(&Pressing) -> f64) {
-        let slope = |contact: &Pressing| match contact.mode {
-            Mode::Stick => 0.0,
-            Mode::Slide(sign) => -contact.friction * sign,
-        };
         // Where a load cancels a weight, what is left of accelerations is rounding.
-        let solved = self.solve(FLOOR, |contact| contact.mode == Mode::Stick, slope, |contact| -contact.free, weight);
+        let solved =
+            self.solve(FLOOR, |contact| contact.mode == Mode::Stick, Pressing::slope, |contact| -contact.free, weight);
         self.contacts.iter_mut().for_each(|contact| contact.force = Vector::zeros());
         for (&(k, r), x) in self.unknowns.iter().zip(self.linear.solution()) {
             // Without a solution no step is right: what isn't a number is refused.
@@ -359,7 +356,7 @@ impl Smooth {
         }
         for contact in &mut self.contacts {
             if contact.mode != Mode::Stick {
-                contact.force[1] = slope(contact) * contact.force[0];
+                contact.force[1] = contact.slope() * contact.force[0];
             }
         }
     }
@@ -509,23 +506,24 @@ impl Smooth {
         if self.contacts.iter().any(|contact| contact.free[0] != 0.0)
             && self.solve(0.0, |_| false, |_| 0.0, |contact| contact.free, |_| 1.0)
         {
-            self.push_with_solution();
+            self.push_with_solution(|_| 0.0);
             self.a.fill(0.0);
             self.stage.respond(model, work, &responses, &mut self.a).map_err(problem)?;
             self.q_probe.copy_from_slice(&y[..nq]);
             model.move_along(&self.q_probe, &self.a, 1.0, &mut y[..nq]);
             correction.of_places = largest_change(&self.q_probe, &y[..nq]);
         }
-        if self.solve(0.0, |contact| contact.mode == Mode::Stick, |_| 0.0, |contact| -contact.u, |_| 1.0) {
-            self.push_with_solution();
-            // What the contacts had of velocities is what they lose.
+        // Friction belongs to it: a bounce that was too low to count may be all of it.
+        if self.solve(0.0, |contact| contact.mode == Mode::Stick, Pressing::slope, |contact| -contact.u, |_| 1.0) {
+            self.push_with_solution(Pressing::slope);
             self.v.copy_from_slice(&y[nq..nq + nv]);
             self.stage.respond(model, work, &responses, &mut y[nq..nq + nv]).map_err(problem)?;
             for k in 0..self.contacts.len() {
-                let p = self.contacts[k].row.and_then(|row| self.stage.impulse(row)).unwrap_or_else(Vector::zeros);
+                let Some(row) = self.contacts[k].row else { continue };
+                let p = self.stage.impulse(row).unwrap_or_else(Vector::zeros);
                 let first = nq + nv + WORKS + OF_CONTACT * k;
-                let u = self.contacts[k].u;
-                let took = [p[0], p[1], 0.5 * p[0] * u[0], 0.5 * p[1] * u[1]];
+                let mean = 0.5 * (self.contacts[k].u + self.stage.velocity(row, &y[nq..nq + nv])?);
+                let took = [p[0], p[1], p[0] * mean[0], p[1] * mean[1]];
                 y[first..first + OF_CONTACT].iter_mut().zip(took).for_each(|(y, took)| *y += took);
             }
             correction.of_velocities = largest_change(&self.v, &y[nq..nq + nv]);
@@ -533,14 +531,17 @@ impl Smooth {
         Ok(correction)
     }
 
-    /// Gives the stage what was solved for.
-    fn push_with_solution(&mut self) {
+    /// Gives the stage what was solved for with these slopes.
+    fn push_with_solution(&mut self, slope: impl Fn(&Pressing) -> f64) {
         let Self { contacts, unknowns, linear, stage, .. } = self;
         contacts.iter().filter_map(|contact| contact.row).for_each(|row| stage.push_with(row, Vector::zeros()));
         for (&(k, r), x) in unknowns.iter().zip(linear.solution()) {
             if let Some(row) = contacts[k].row {
                 let mut p = stage.impulse(row).unwrap_or_else(Vector::zeros);
                 p[r] = *x;
+                if r == 0 {
+                    p[1] = slope(&contacts[k]) * x;
+                }
                 stage.push_with(row, p);
             }
         }

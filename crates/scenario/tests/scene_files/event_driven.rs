@@ -217,10 +217,11 @@ fn a_block_slides_over_a_rounded_edge_and_off_it() {
          position = ['5 cm', '8 cm']\nvelocity = ['1.5 m/s', '0 m/s']\n";
     let short = run(scene, "100 us").state;
     assert!(short.q[5].abs() > 0.3, "it tips: {:?}", short.q);
-    for step in ["1 ms", "10 ms"] {
+    // In every other size of step its rounded corner would strike the table as it only grazes it, 6e-6 rad.
+    for step in ["20 us", "500 us", "1 ms", "2 ms", "10 ms"] {
         let state = run(scene, step).state;
         for (q, other) in state.q.iter().zip(&short.q) {
-            assert!((q - other).abs() < 1e-8, "{step}: {:?} and {:?}", state.q, short.q);
+            assert!((q - other).abs() < 1e-11, "{step}: {:?} and {:?}", state.q, short.q);
         }
     }
 }

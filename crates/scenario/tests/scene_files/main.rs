@@ -14,6 +14,7 @@ mod driven;
 mod event_driven;
 mod feet;
 mod flush;
+mod friction;
 mod located;
 mod many;
 mod modes;
