@@ -138,7 +138,7 @@ pub struct BodyVerdict {
     /// How it moves at the end, of one that does and has no other fate.
     #[serde(skip)]
     pub(crate) going: Option<Going>,
-    /// Of one that trembles where it stands: when it last swung, s, if it rocked.
+    /// Of one that trembles or chatters where it stands: when it last swung, s, if it rocked.
     #[serde(skip)]
     pub(crate) stopped_rocking: Option<f64>,
     /// Of one that is shaken where it stands, or hops or bounces there: what it stands on, and in the end on other blocks, in words, if that moves at the end.

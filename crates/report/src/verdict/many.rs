@@ -114,7 +114,8 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
     for base in bases.iter().filter(|base| base.what != Fate::Rocks) {
         let column: Vec<_> = verdict.iter().filter(|of| is_on(of, base)).collect();
         let last = column.iter().filter_map(|of| of.rests_from).fold(0.0, f64::max);
-        let trembles = |of: &&BodyVerdict| matches!(of.going, Some(Going::Trembles | Going::Vibrates));
+        let trembles =
+            |of: &&BodyVerdict| matches!(of.going, Some(Going::Trembles | Going::Chatters | Going::Vibrates));
         let then = match () {
             () if column.iter().all(|of| of.rests_from.is_some()) => format!(", came to rest, last at {}", time(last)),
             () if column.iter().any(trembles) => " and still tremble".to_owned(),
