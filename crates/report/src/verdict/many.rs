@@ -227,7 +227,9 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
             // Those of which it is unknown have none.
             false => "all",
         };
-        let of = if whose == "the column" { String::new() } else { format!(" (`{}`)", of.body) };
+        // What fell there may have flown at a larger angle, as the sentence on a single block says.
+        let since = if of.settled_at().is_some() { ", since it settled" } else { "" };
+        let of = if whose == "the column" { String::new() } else { format!(" (`{}`{since})", of.body) };
         text.push_str(&format!("; largest φ/α of {whose} {}{of}", part(largest)));
     }
     if collapsed { format!("collapsed: {text}") } else { text }
