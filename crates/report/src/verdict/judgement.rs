@@ -236,6 +236,8 @@ impl Seen {
                 .then(|| watched.carrier.below_an_end([q[0], q[1]], watched.reach, layout, &state.q))
                 .flatten()
                 .map(|(way, beam)| (way, layout.beams[beam].name.clone())),
+            aside: Some(watched.centre(layout, number, state) - self.released)
+                .filter(|at| what == Fate::Overturned && way.is_some_and(|way| way.sign() * at >= least)),
             touches_beam: what == Fate::Left && touches_beam,
             past_edge: self.past_edge,
             overturned_with: None,

@@ -58,7 +58,7 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
             parts.push(format!("`{}` {}", one.body, headline::one(scene, one, end)));
             return;
         }
-        let way = earliest.way.map_or_else(String::new, |way| format!(" to the {}", way.word()));
+        let way = earliest.way.map_or_else(String::new, |_| format!(" {}", earliest.way_over()));
         let when = match earliest.t {
             Some(t) if t == earliest.start && earliest.what == Fate::Overturned => " from the start".to_owned(),
             t => t.map_or_else(String::new, |t| format!(" at {}", time(t))),
@@ -82,9 +82,9 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
         for base in columns.iter().filter(|of| of.overturned_with.as_ref() == Some(&of.body)) {
             let column: Vec<_> =
                 columns.iter().copied().filter(|of| of.overturned_with.as_ref() == Some(&base.body)).collect();
-            let way = base.way.map_or("", |way| way.word());
+            let way = base.way_over();
             let when = base.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
-            let what = format!("overturned as one column on the base of `{}` to the {way}{when}", base.body);
+            let what = format!("overturned as one column on the base of `{}` {way}{when}", base.body);
             falls.push((column, what, ""));
         }
         // In the order in which they did.

@@ -1,6 +1,7 @@
 //! The sentence on what became of a scene, where a word would say more than is true.
 
 use crate::page::{run, run_from, scenario};
+use crate::plots::table;
 use crate::sizes::tile;
 use teeter_report::half_cycles;
 
@@ -59,6 +60,32 @@ fn what_slips_a_little_as_its_contacts_open_and_close_chatters() {
     let headline = run("chatters-on-a-tip", &text).summary.headline;
     let told = "`cube` stopped rocking at t = 475.5 ms, is still chattering where it stands, on a beam that moves (";
     assert!(headline.starts_with(told), "{headline}");
+}
+
+/// It is thrown to the right and turns counter-clockwise, to its left: neither side alone says what it did.
+#[test]
+fn what_turns_over_against_its_way_is_told_how_it_turned_and_where_it_is() {
+    let thrown = |velocity: f64| {
+        let text = format!(
+            "[time]\nend = '2 s'\nstep = '200 us'\n[ground]\n[block.b]\ndensity = '2400 kg/m^3'\nwidth = '10 cm'\nheight = '30 cm'\n\
+             depth = '10 cm'\non = 'ground'\nat = '0 m'\nvelocity = ['{velocity} m/s', '0 m/s']\nspin = '8 rad/s'\n\
+             [contact.c]\nbetween = ['b', 'ground']\nfriction = 0.05\n"
+        );
+        run(&format!("thrown-{velocity}"), &text)
+    };
+    let right = thrown(2.0);
+    let headline = &right.summary.headline;
+    let rest =
+        headline.strip_prefix("`b` overturned counter-clockwise at t = ").unwrap_or_else(|| panic!("{headline}"));
+    let (at, _) = rest
+        .split_once(" ms, in the end ")
+        .and_then(|(_, place)| place.split_once(" m right of its start"))
+        .unwrap_or_else(|| panic!("{headline}"));
+    let rows = table(&right.folder.join("trajectory.csv"));
+    let (_, x) = rows.iter().find(|(name, _)| name == "b.x").unwrap();
+    assert!((x[x.len() - 1] - x[0] - at.parse::<f64>().unwrap()).abs() < 1e-3, "{headline}");
+    let left = thrown(-2.0).summary.headline;
+    assert!(left.starts_with("`b` overturned to the left at t = ") && !left.contains("in the end"), "{left}");
 }
 
 /// A run that goes on from the state of another one begins with what stands there standing: it wasn't released in flight.
@@ -422,6 +449,16 @@ fn the_largest_angle_of_what_flew_counts_since_it_settled() {
     let ran = run("dropped-tilted", text);
     assert!(ran.summary.headline.contains(" (largest φ/α since it settled 0.1"), "{}", ran.summary.headline);
     assert!(ran.html.contains("<dt>Largest φ/α since it settled at t = "));
+    // Among more than two, too.
+    let others = ["left", "right"].map(|name| {
+        let at = if name == "left" { "-1 m" } else { "1 m" };
+        format!(
+            "[block.{name}]\ndensity = '2400 kg/m^3'\nwidth = '20 cm'\nheight = '10 cm'\ndepth = '10 cm'\non = 'ground'\nat = '{at}'\n\
+             [contact.{name}]\nbetween = ['{name}', 'ground']\nfriction = 0.4\n"
+        )
+    });
+    let three = run("dropped-beside", &format!("{text}{}", others.concat())).summary.headline;
+    assert!(three.contains("; largest φ/α of all 0.1") && three.ends_with(" (`brick`, since it settled)"), "{three}");
 }
 
 #[test]
