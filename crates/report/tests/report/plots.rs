@@ -496,7 +496,7 @@ contact.c = { between = ["crate", "deck"], friction = 0.4, restitution = 0.3 }
     assert_eq!(feet, ["bottom right", "top right"]);
     let svg = figures(&run.page).into_iter().find(|(file, _)| file == "contact_forces.svg").unwrap().1;
     let pale = |colour: &str| {
-        svg.matches(&format!("stroke=\"{colour}\" stroke-dasharray=\"none\" stroke-width=\".5\" stroke-opacity=\".2\""))
+        svg.matches(&format!("stroke=\"{colour}\" stroke-dasharray=\"none\" stroke-width=\".5\" stroke-opacity=\".35\""))
             .count()
     };
     assert!(pale("#e05206") > 0 && pale("#e05206") == pale("#00a078"), "{} {}", pale("#e05206"), pale("#00a078"));
@@ -524,6 +524,23 @@ fn energies_on_the_page_are_those_of_the_table_to_a_millionth_of_their_range() {
     assert!(line["y"]["unit"].as_f64().unwrap() <= 1.01e-6 * (high - low), "{}", line["y"]["unit"]);
     let lost = (total[total.len() - 1] - total[0]) * per_joule;
     assert!((y[y.len() - 1] - y[0] - lost).abs() <= 2e-6 * (high - low), "{} {lost}", y[y.len() - 1] - y[0]);
+}
+
+/// Blocks that stand apart are drawn from their starts in the portrait of a coordinate, as in its plot: the curves lie over each other.
+#[test]
+fn a_portrait_of_blocks_that_stand_apart_is_from_their_starts() {
+    let run = scenario("dry-stone-wall");
+    let portrait = &data(&run.html)["portraits"][0];
+    assert_eq!(portrait["title"], "Phase portrait: ẋ over x − x₀");
+    assert_eq!(portrait["x_label"], "Displacement x − x₀ relative to the ground (cm)");
+    let series = portrait["series"].as_array().unwrap();
+    assert!(series.len() > 5);
+    for line in series {
+        let x = numbers(&line["x"]);
+        assert!(x[0].abs() < 1e-6 && x.iter().all(|x| x.abs() < 3.0), "{}", line["label"]);
+    }
+    let figure = fs::read_to_string(run.folder.join("figures/phase_x.svg")).unwrap();
+    assert!(figure.contains("Displacement x − x₀ relative to the ground (cm)"));
 }
 
 /// A disc on a table that is shaken: each portrait is of the disc, and says so, as the other one could be another block's.
