@@ -492,7 +492,9 @@
     const whole = htmlElement("button", "link", "Show all times", note);
     whole.type = "button";
     whole.addEventListener("click", () => plots.zoom(start, end));
-    if (curves.thinned) note.append(`. The curves have the lowest and the highest value of every ${forces.bucket}, not more, however far one zooms in.`);
+    // Paper has no button, nor what stands after it.
+    htmlElement("span", "on-screen", ". ", note);
+    if (curves.thinned) note.append(`The curves have the lowest and the highest value of every ${forces.bucket}, not more, however far one zooms in.`);
     byId("plots").prepend(note);
   }
 
