@@ -77,13 +77,13 @@ export async function flatAtFirst(page, trajectory) {
   if (!spans.length) return [];
   const part = (Math.max(...spans.map(([, to]) => to)) - Math.min(...spans.map(([from]) => from))) / (end - start);
   const opened = await page.$("#opened-on") !== null;
-  if (opened && part > 0.25) return [`opens on a part of the run, though ${(100 * part).toFixed(0)} % of it moves`];
+  if (opened && part > 0.45) return [`opens on a part of the run, though ${(100 * part).toFixed(0)} % of it moves`];
   // Curves that have the extremes of many steps would be polygons.
   const coarse = await page.evaluate((share) => {
     const { thinned, t } = JSON.parse(document.getElementById("data").textContent).curves;
     return thinned && (share * t.length) / 2 < 60;
   }, 1.5 * part);
-  return !opened && !coarse && part >= 0 && part < 0.1 && trajectory.length > 1000 ? [`opens on all of a run of which ${(100 * part).toFixed(1)} % moves`] : [];
+  return !opened && !coarse && part >= 0 && part < 0.3 && trajectory.length > 1000 ? [`opens on all of a run of which ${(100 * part).toFixed(1)} % moves`] : [];
 }
 
 /** Folds that paper unfolds though they hold nothing but tables of detail. Runs in the page. */

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use teeter_scenario::output_size::{OutputSize, accuracy_of_seconds, has_many_contacts, writing_seconds};
 use teeter_scenario::pile::PileEstimate;
 use teeter_scenario::preview::{BeamPreview, BlockPreview, FEW_DIGITS, Preview, ShapesPreview};
-use teeter_scenario::readable::{shortest, with_unit};
+use teeter_scenario::readable::{shortest, with_mass, with_unit};
 use teeter_scenario::resolve::Resolved;
 use teeter_scenario::scene::{GroundScene, Scene, SchemeName};
 use teeter_scenario::simulation::Simulation;
@@ -158,7 +158,7 @@ fn block(block: &BlockPreview) -> String {
     let overturns = block
         .critical_angle
         .map_or_else(String::new, |angle| format!("; overturns beyond {} deg{from} (critical angle)", degrees(angle)));
-    format!("block {}: {} kg, {place}{overturns}", block.name, digits(block.mass))
+    format!("block {}: {}, {place}{overturns}", block.name, with_mass(block.mass))
 }
 
 /// Digits are shown if they are fewer than this.

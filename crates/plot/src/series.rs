@@ -81,6 +81,26 @@ impl Series {
         }
     }
 
+    /// Means over stretches, each from its point's x to that of the next, the last to `end`: a line through the middles of these, as what changes slowly
+    /// has no steps, with a jump where two neighbours differ by far more than those beside them do.
+    #[must_use]
+    pub fn means(label: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>, end: f64) -> Self {
+        let points: Vec<(f64, f64)> = points.into_iter().collect();
+        let jumps = jumps(&points.iter().map(|point| point.1).collect::<Vec<_>>());
+        let mut line = Vec::with_capacity(points.len() + 2);
+        for (k, &(from, y)) in points.iter().enumerate() {
+            let to = points.get(k + 1).map_or(end, |next| next.0);
+            if k == 0 || jumps[k - 1] {
+                line.push((from, y));
+            }
+            line.push((0.5 * (from + to), y));
+            if k + 1 == points.len() || jumps[k] {
+                line.push((to, y));
+            }
+        }
+        Self::line(label, line)
+    }
+
     /// A step line: each value is constant up to the x of the next point, the last one up to `end`.
     #[must_use]
     pub fn staircase(label: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>, end: f64) -> Self {
@@ -298,9 +318,38 @@ pub fn coincident(count: usize, most: u8, lies_on: impl Fn(usize, usize) -> bool
     Coincident { over: over.collect(), too_many }
 }
 
+/// A change from one mean to the next is a jump if it is this many times as large as those before and after it.
+const JUMPS: f64 = 4.0;
+
+/// A change by less than this part of the range of all means is seen as a kink at most.
+const SEEN: f64 = 0.02;
+
+/// Whether each of these means jumps to the next one.
+fn jumps(means: &[f64]) -> Vec<bool> {
+    let finite = || means.iter().copied().filter(|y| y.is_finite());
+    let range = finite().fold(f64::NEG_INFINITY, f64::max) - finite().fold(f64::INFINITY, f64::min);
+    let change = |k: usize| means.get(k + 1).map_or(0.0, |next| (next - means[k]).abs());
+    let is_jump = |k: usize| {
+        let beside = change(k + 1).max(k.checked_sub(1).map_or(0.0, change));
+        // What is not finite is no neighbour to draw a line to.
+        !change(k).is_finite() || (change(k) > SEEN * range && change(k) > JUMPS * beside)
+    };
+    (0..means.len().saturating_sub(1)).map(is_jump).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn means_of_what_changes_slowly_have_no_steps_and_what_jumps_does() {
+        let ramp = Series::means("", [(0.0, 0.0), (1.0, 0.1), (2.0, 0.2), (3.0, 0.3)], 4.0);
+        assert_eq!(ramp.points(), [(0.0, 0.0), (0.5, 0.0), (1.5, 0.1), (2.5, 0.2), (3.5, 0.3), (4.0, 0.3)]);
+        let jump = Series::means("", [(0.0, 1.0), (1.0, 1.0), (2.0, 5.0), (3.0, 5.1)], 4.0);
+        assert_eq!(jump.points()[2..5], [(1.5, 1.0), (2.0, 1.0), (2.0, 5.0)]);
+        let missing = Series::means("", [(0.0, 1.0), (1.0, f64::NAN), (2.0, 2.0)], 3.0);
+        assert!(missing.points().contains(&(1.0, 1.0)) && missing.points().contains(&(2.0, 2.0)));
+    }
 
     #[test]
     fn only_a_line_on_an_earlier_one_is_dashed() {

@@ -73,11 +73,11 @@ impl Colour {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
     /// Relative luminance of a colour as `#rrggbb` (WCAG 2.2).
-    fn luminance(colour: &str) -> f64 {
+    pub(crate) fn luminance(colour: &str) -> f64 {
         let part = |at: usize| {
             let x = f64::from(u8::from_str_radix(&colour[at..at + 2], 16).unwrap()) / 255.0;
             if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }

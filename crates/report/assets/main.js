@@ -72,7 +72,18 @@
   const sumOf = (points) => points.reduce((total, { tangential }) => tangential.map((f, i) => (f === null ? null : f + (total[i] ?? 0))), []);
   const scaled = (values, factor) => values.map((f) => (f === null ? null : f * factor));
   const active = scenery.contacts.map((_, k) => k).filter((k) => forces.points.some((point) => point.contact === k));
-  /** The contacts with the largest forces, as plotted, in their order. An impulse counts as a force over a time that suits the block's size. */
+  /** Whether no force of a contact changes by more than can be seen: that tells less than those that do, however large it is. */
+  const isConstant = (k) => forces.points.filter(({ contact }) => contact === k).every((point) => {
+    const courses = [point.course?.[0].y ?? point.normal, point.course?.[1].y ?? point.tangential];
+    const [normal, tangential] = courses.map((values) => values.filter(Number.isFinite));
+    const ends = (values) => values.reduce(([a, b], value) => [Math.min(a, value), Math.max(b, value)], [Infinity, -Infinity]);
+    const largest = Math.max(...[normal, tangential].flatMap(ends).filter(Number.isFinite).map(Math.abs), 0);
+    return !point.impacts && [normal, tangential].every((values) => !values.length || ends(values)[1] - ends(values)[0] <= 0.01 * largest);
+  });
+  const constant = new Set(active.filter(isConstant));
+  /** First those that tell something. */
+  const inOrder = active.filter((k) => !constant.has(k)).concat([...constant]);
+  /** The contacts with the largest forces, as plotted, in their order; before others those whose forces change. An impulse counts as a force over a time that suits the block's size. */
   const strongestContacts = (count) => {
     const largest = (values) => (values ?? []).reduce((most, x) => Math.max(most, x ?? 0), 0);
     const strength = (k) => {
@@ -80,21 +91,21 @@
       const force = ({ normal, course }) => (forces.forceless?.includes(k) ? 0 : largest(course?.[0].y ?? normal));
       return Math.max(...forces.points.filter(({ contact }) => contact === k).map((point) => Math.max(force(point), largest(point.impacts) / lasting)));
     };
-    const kept = active.map((k) => [k, strength(k)]).sort(([, a], [, b]) => b - a).slice(0, count).map(([k]) => k);
-    return active.filter((k) => kept.includes(k));
+    const kept = active.map((k) => [k, strength(k)]).sort(([j, a], [k, b]) => constant.has(j) - constant.has(k) || b - a).slice(0, count).map(([k]) => k);
+    return inOrder.filter((k) => kept.includes(k));
   };
   // So many that one would look for them: one at a time.
   if (active.length > 3) {
     const label = htmlElement("label", "", "Forces of ", byId("plots"));
     label.id = "choice";
     const choice = htmlElement("select", "", undefined, label);
-    for (const k of active) choice.append(new Option(forces.names[k], k));
+    for (const k of inOrder) choice.append(new Option(`${forces.names[k]}${constant.has(k) ? " (constant)" : ""}`, k));
     choice.addEventListener("change", () => plots.choose(Number(choice.value)));
   }
 
-  scenery.contacts.forEach((contact, k) => {
+  for (const k of inOrder) {
+    const contact = scenery.contacts[k];
     const points = forces.points.filter((point) => point.contact === k);
-    if (!points.length) return;
     const suffix = scenery.contacts.length > 1 ? `, ${forces.names[k]}` : "";
     const strikes = points.filter(({ impacts }) => impacts);
     // Colours are for those that touch: of all there would be too many.
@@ -127,11 +138,15 @@
       const ofSprings = forces.compliant?.includes(k);
       if (ofSprings && forces.springs) htmlElement("p", "note", sentence(forces.springs), byId(`panel-${key}-${k}`));
       if (!ofSprings) htmlElement("p", "note", means.length ? `Pale: ${over}. Strong: without vibrations of periods below ${forces.period}.` : sentence(over), byId(`panel-${key}-${k}`));
+      const [, unsmoothed] = (means.length && forces.unsmoothed?.find(([of]) => of === k)) || [];
+      if (unsmoothed) htmlElement("p", "note", sentence(unsmoothed), byId(`panel-${key}-${k}`));
       if (sums) {
         htmlElement("p", "note", "The sum over the points: how those that stick share it, equilibrium leaves open. Their shares are in contacts.csv.", byId(`panel-${key}-${k}`));
       }
       if (forces.redundant?.includes(k)) {
-        htmlElement("p", "note", "Equilibrium alone doesn't decide these forces: of rigid bodies that are held more than they need be, they are one of many sets that keep them in balance.", byId(`panel-${key}-${k}`));
+        // On paper once for both.
+        const isSaid = key === "tangential" && !forces.forceless?.includes(k);
+        htmlElement("p", `note${isSaid ? " said" : ""}`, "Equilibrium alone doesn't decide these forces: of rigid bodies that are held more than they need be, they are one of many sets that keep them in balance.", byId(`panel-${key}-${k}`));
       }
       if (enlarged) {
         plots.add({
@@ -164,7 +179,7 @@
       unseen ? `Slip of less than ${unseen} at a time is drawn as sticking.` : "",
     ].filter(Boolean);
     if (notes.length) htmlElement("p", "note", notes.join(" "), byId(`panel-state-${k}`));
-  });
+  }
 
   if (scenery.hidden_points > 0 || scenery.unlisted) {
     const many = scenery.hidden_points > 0 ? `No contact has plots of its own: ${scenery.hidden_points} points can touch, more than 2000.`
@@ -477,7 +492,9 @@
     const whole = htmlElement("button", "link", "Show all times", note);
     whole.type = "button";
     whole.addEventListener("click", () => plots.zoom(start, end));
-    if (curves.thinned) note.append(`. The curves have the lowest and the highest value of every ${forces.bucket}, not more, however far one zooms in.`);
+    // Paper has no button, nor what stands after it.
+    htmlElement("span", "on-screen", ". ", note);
+    if (curves.thinned) note.append(`The curves have the lowest and the highest value of every ${forces.bucket}, not more, however far one zooms in.`);
     byId("plots").prepend(note);
   }
 
@@ -498,16 +515,24 @@
     lastWidth = document.documentElement.clientWidth;
     requestAnimationFrame(relayout);
   }).observe(document.documentElement);
-  /** The picture in which a block is turned furthest from its start, and the last one, if it looks otherwise. */
+  /** How far a beam is deflected at most in a picture, m. */
+  const bent = (k) => scenery.beams.reduce((most, { points }, beam) => {
+    const { unit, w } = frames.beams[beam];
+    return w.slice(k * points, (k + 1) * points).reduce((far, x) => Math.max(far, Math.abs(x) * unit), most);
+  }, 0);
+
+  /** The picture in which a block is turned furthest from its start, of beams alone that of the largest deflection, and the last one, if it looks otherwise. */
   function telling() {
     const last = times.length - 1;
     const turned = (k) => frames.blocks.reduce((most, { phi }) => Math.max(most, Math.abs(phi[k] - phi[0])), 0);
     const furthest = times.reduce((best, _, k) => (turned(k) > turned(best) ? k : best), 0);
-    const swing = turned(furthest) > turned(last) + 1e-3 ? [furthest] : [];
+    const swing = turned(furthest) > turned(last) + 1e-3 ? [[furthest, "With a block turned furthest from its start"]] : [];
+    const deepest = scenery.blocks.length ? 0 : times.reduce((best, _, k) => (bent(k) > bent(best) ? k : best), 0);
+    if (bent(deepest) > 1.05 * Math.max(bent(0), bent(last))) swing.push([deepest, "With the largest deflection"]);
     // What stands still looks as it does now.
     const moves = ({ x, y, phi }, k) => Math.hypot(x[last] - x[frame], y[last] - y[frame]) > 1e-3 * scenery.blocks[k].reach || Math.abs(phi[last] - phi[frame]) > 1e-3;
-    const ending = scenery.beams.length > 0 || frames.blocks.some(moves) ? [last] : [];
-    return [...swing, ...ending].filter((k) => k !== frame);
+    const ending = scenery.beams.length > 0 || frames.blocks.some(moves) ? [[last, "At the end"]] : [];
+    return [...swing, ...ending].filter(([k]) => k !== frame);
   }
 
   /** Widths of pictures on an A4 page, px: of two and of three beside each other. */
@@ -532,20 +557,20 @@
       byId("stage").classList.add("thirds");
       scene.layoutFor(third);
     }
-    for (const k of pictures) {
+    for (const [k, why] of pictures) {
       show(k);
       scene.crop(true);
       const figure = htmlElement("figure", "", undefined, printed.pictures);
       const picture = scene.root.cloneNode(true);
       picture.removeAttribute("id");
       figure.append(picture);
-      const why = k === times.length - 1 ? "At the end" : "With a block turned furthest from its start";
       const caption = htmlElement("figcaption", "", `${why}: ${byId("time-readout").textContent}`, figure);
       const angles = byId("scene-readout");
       if (!angles.classList.contains("on-screen")) caption.append(" · ", ...[...angles.childNodes].map((one) => one.cloneNode(true)));
     }
     show(printed.frame);
     scene.crop(true);
+    byId("which").textContent = frame === 0 ? "At the start: " : frame === frameAt(opening.t) ? "Before the motion: " : "As chosen on the page: ";
     if (active.length > 3) plots.choose(...strongestContacts(3)); // More would be sheets of plots that look alike.
     // Paper has its own width; drawn for that of the screen, the plots' type would come out too small or too large.
     plots.drawFor(680);

@@ -159,6 +159,7 @@ const plots = (() => {
     for (const series of panel.series.filter(({ inPart }) => inPart || panel.portrait)) {
       series.alone = series.t.map((_, i) => (series.turns ?? []).filter((turn) => turn <= i).length % 2 === 1);
     }
+    for (const series of panel.series.filter(({ stepped }) => stepped)) series.jumps = jumpsOf(series.y);
     panel.most = largestOf(panel);
     head(panel, panel.element);
     panel.svg = svgElement("svg", { class: "plot", role: "img", tabindex: 0, "aria-label": spoken.plot(panel) }, panel.element);
@@ -206,6 +207,14 @@ const plots = (() => {
     return [low - room, high + room];
   }
 
+  /** Whether each mean jumps to the next one: by far more than the means beside them do. As figures draw them. */
+  function jumpsOf(means) {
+    const [low, high] = means.filter(Number.isFinite).reduce(([a, b], value) => [Math.min(a, value), Math.max(b, value)], [Infinity, -Infinity]);
+    const change = (k) => (k < 0 || k + 1 >= means.length ? 0 : Math.abs(means[k + 1] - means[k]));
+    return means.map((value, i) => value === null || means[i + 1] === null
+      || (change(i) > 0.02 * (high - low) && change(i) > 4 * Math.max(change(i - 1), change(i + 1))));
+  }
+
   function path(series, x, y) {
     let d = "";
     let pen = "M";
@@ -220,8 +229,15 @@ const plots = (() => {
     const from = Math.max(0, indexAt(series.t, view[0]) - 1);
     for (let i = from; i < series.y.length; i++) {
       const value = series.y[i] === null ? NaN : y(series.y[i]);
-      put(x(series.t[i]), value);
-      if (series.stepped) put(x(series.t[i + 1]), value);
+      if (series.stepped) {
+        // Through the middles of the stretches: what changes slowly has no steps.
+        const [left, right] = [x(series.t[i]), x(series.t[i + 1])];
+        if (i === 0 || series.jumps[i - 1]) put(left, value);
+        put((left + right) / 2, value);
+        if (i + 1 === series.y.length || series.jumps[i]) put(right, value);
+      } else {
+        put(x(series.t[i]), value);
+      }
       if (series.t[i] > view[1]) break;
     }
     return d;
@@ -316,12 +332,17 @@ const plots = (() => {
       .map(({ count, t }) => mark(t, 9 * Math.sqrt(count / most))).join("");
   }
 
+  /** Bands keep the height of their rows; of plots paper has five to a page, A4 or letter. */
+  function heightOf(panel) {
+    return paper && !panel.bands ? 0.78 * panel.height : panel.height;
+  }
+
   function drawPanel(panel) {
     if (panel.portrait) {
       drawPortrait(panel);
       return;
     }
-    const size = { width: width(), height: panel.height };
+    const size = { width: width(), height: heightOf(panel) };
     const bottom = size.height - margin.bottom;
     const clip = `clip-${panel.id}`;
     setAll(panel.svg, { viewBox: `0 0 ${size.width} ${size.height}` });
@@ -378,7 +399,7 @@ const plots = (() => {
   const portraitBottom = 38;
 
   function drawPortrait(panel) {
-    const size = { width: width(), height: panel.height };
+    const size = { width: width(), height: heightOf(panel) };
     const extent = (values, least) => {
       const finite = values.filter(Number.isFinite);
       const [low, high] = finite.reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
@@ -439,7 +460,7 @@ const plots = (() => {
     }
     const inView = now >= view[0] && now <= view[1];
     const at = px(now).toFixed(1);
-    panel.cursor.setAttribute("d", inView ? `M${at} ${margin.top}V${panel.height - margin.bottom}` : "M0 0");
+    panel.cursor.setAttribute("d", inView ? `M${at} ${margin.top}V${heightOf(panel) - margin.bottom}` : "M0 0");
   }
 
   /** The value of a series at a time: at that of a picture the one that is known there. Where a curve shows the extremes of many steps, `t` is that of one. */
@@ -470,9 +491,9 @@ const plots = (() => {
       if (panel === under && t !== null) {
         const half = labelWidth(panel.hoverTime.textContent) / 2 + 3;
         const middle = Math.min(width() - margin.right - half, Math.max(margin.left + half, px(t)));
-        setAll(panel.hoverTime, { x: middle.toFixed(1), y: panel.height - margin.bottom - 5 });
+        setAll(panel.hoverTime, { x: middle.toFixed(1), y: heightOf(panel) - margin.bottom - 5 });
       }
-      const d = t === null ? "M0 0" : `M${px(t).toFixed(1)} ${margin.top}V${panel.height - margin.bottom}`;
+      const d = t === null ? "M0 0" : `M${px(t).toFixed(1)} ${margin.top}V${heightOf(panel) - margin.bottom}`;
       panel.hover.setAttribute("d", d);
     }
     readOut(t ?? now);
@@ -490,7 +511,7 @@ const plots = (() => {
     const select = (a, b) => {
       const [left, right] = [px(Math.min(a, b)), px(Math.max(a, b))];
       setAll(panel.selection, {
-        x: left, y: margin.top, width: Math.max(0, right - left), height: panel.height - margin.top - margin.bottom,
+        x: left, y: margin.top, width: Math.max(0, right - left), height: heightOf(panel) - margin.top - margin.bottom,
       });
     };
     panel.svg.addEventListener("pointerdown", (event) => {

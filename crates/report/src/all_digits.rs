@@ -17,6 +17,15 @@ pub(crate) fn with_all_digits(x: f64, unit: &str, digits: usize) -> String {
     }
 }
 
+/// As [`with_digits`], but with all zeros at its end, also of what is exact: numbers of one kind beside each other, as energies, have as many digits.
+pub(crate) fn with_zeros(x: f64, unit: &str, digits: usize) -> String {
+    let shown = with_digits(x, unit, digits);
+    match shown.split_once(' ') {
+        Some((number, unit)) if x != 0.0 => format!("{} {unit}", padded(number, digits)),
+        _ => shown,
+    }
+}
+
 /// As [`shortest`], but with the zeros at its end where `x` was rounded.
 pub(crate) fn all_digits(x: f64, digits: usize) -> String {
     let shown = shortest(x, digits);
@@ -50,6 +59,10 @@ mod tests {
         assert_eq!(
             (with_all_digits(1.0049e-3, "J", 3), with_all_digits(0.0, "J", 3)),
             ("1.00 mJ".into(), "0 J".into())
+        );
+        assert_eq!(
+            [1.0, 1.0049, 0.0, -0.02].map(|energy| with_zeros(energy, "J", 3)),
+            ["1.00 J", "1.00 J", "0 J", "-20.0 mJ"]
         );
         assert_eq!(
             (all_digits(1e-9 * 1.001, 3), with_all_digits(0.12 + 1e-14, "s", 4)),

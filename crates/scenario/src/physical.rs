@@ -7,7 +7,7 @@ use crate::wording;
 use teeter_beam::Damping;
 use teeter_detect::Shape;
 use teeter_integrator::ImpactLaw;
-use teeter_text::readable::{shortest, with_unit};
+use teeter_text::readable::{shortest, with_mass, with_unit};
 
 /// Bodies and contacts of a table at most.
 pub const LISTED: usize = 20;
@@ -92,10 +92,6 @@ fn or_nothing(value: Option<String>) -> String {
     value.unwrap_or_else(|| NOTHING.to_owned())
 }
 
-fn kilograms(mass: f64) -> String {
-    format!("{} kg", shortest(mass, 4))
-}
-
 /// The diameter of a block that is a disc, m.
 fn diameter(of: &BlockScene) -> Option<f64> {
     match of.parts.as_deref() {
@@ -143,7 +139,7 @@ fn block(of: &BlockScene, gravity: f64) -> Vec<String> {
     vec![
         of.name.clone(),
         size(of),
-        kilograms(of.mass()),
+        with_mass(of.mass()),
         or_nothing(alpha.map(|alpha| format!("{}°", shortest(alpha.to_degrees(), 4)))),
         or_nothing(p.map(|p| format!("{} rad/s", shortest(p, 4)))),
     ]

@@ -3,7 +3,7 @@
 use crate::scene::{BeamScene, LoadKind, Scene};
 use teeter_beam::{BeamSpec, Hold, Support};
 use teeter_integrator::WBackend;
-use teeter_text::readable::{shortest, with_unit};
+use teeter_text::readable::{with_mass, with_unit};
 
 pub use teeter_text::wording::{bytes, duration, expected};
 
@@ -51,7 +51,7 @@ pub fn furniture(spec: &BeamSpec) -> Vec<String> {
         let stiffness = with_unit(of.stiffness, "N/m²");
         format!("foundation of {stiffness}{damping} from {} to {}", at(of.from), at(of.to))
     });
-    let masses = spec.lumps.iter().map(|lump| format!("mass of {} kg at {}", shortest(lump.mass, 4), at(lump.x)));
+    let masses = spec.lumps.iter().map(|lump| format!("mass of {} at {}", with_mass(lump.mass), at(lump.x)));
     inner.chain(foundations).chain(masses).collect()
 }
 

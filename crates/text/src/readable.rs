@@ -57,9 +57,23 @@ pub fn with_digits(x: f64, unit: &str, digits: usize) -> String {
     }
 }
 
+/// A mass (kg) with four digits: below a kilogram in grams or less, so that it has one to three digits before its point, as other quantities have.
+#[must_use]
+pub fn with_mass(mass: f64) -> String {
+    let shown = with_unit(1e3 * mass, "g");
+    if mass.abs() < 1.0 && !shown.ends_with(" kg") { shown } else { format!("{} kg", shortest(mass, 4)) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn masses_are_in_kilograms_or_less() {
+        let masses = [0.006_451_2, 0.328_05, 0.999_99, 1.0, 48.0, 5.28e3, 2.5e-6, 0.0];
+        let told = ["6.451 g", "328.1 g", "1 kg", "1 kg", "48 kg", "5280 kg", "2.5 mg", "0 g"];
+        assert_eq!(masses.map(with_mass), told);
+    }
 
     #[test]
     fn prose_has_four_digits_and_a_prefix() {

@@ -74,10 +74,8 @@ impl Panel {
             let path = line_path(line.points(), |x| frame.px(x), py);
             let dashed = stroke(line.number_at(k), line.dash, theme);
             let weight = match line.faint {
-                true => "stroke-width=\".5\" stroke-opacity=\".2\"",
-                false if !is_alone && is_dense(line.points(), frame, py) => {
-                    "stroke-width=\"1.1\" stroke-opacity=\".45\""
-                }
+                true => "stroke-width=\".5\" stroke-opacity=\".35\"",
+                false if !is_alone && is_dense(line.points(), frame, py) => DENSE,
                 false => "stroke-width=\"1.1\"",
             };
             let _ = writeln!(svg, "<path d=\"{path}\" {dashed} {weight}/>");
@@ -314,6 +312,10 @@ fn cells_path(corners: &[(f64, f64)], px: impl Fn(f64) -> f64, py: impl Fn(f64) 
     path
 }
 
+/// A curve that fills its range, beside others: thin, as wide as the thinnest line that journals print, so that it hides less of them, and hardly
+/// paler than the others, as it is no background.
+const DENSE: &str = "stroke-width=\".7\" stroke-opacity=\".85\"";
+
 /// Whether a curve over ascending x goes up and down more often than once a unit of the width, by more than two units: it fills its range, as vibrations
 /// of a long run do.
 fn is_dense(points: &[(f64, f64)], frame: &Frame, py: impl Fn(f64) -> f64) -> bool {
@@ -356,6 +358,7 @@ fn line_path(points: &[(f64, f64)], px: impl Fn(f64) -> f64, py: impl Fn(f64) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::theme::tests::luminance;
     use crate::{Figure, Mark};
 
     #[test]
@@ -403,15 +406,30 @@ mod tests {
     }
 
     #[test]
-    fn what_fills_its_range_is_pale_beside_others() {
-        let pale = |count: u32, others: &[f64]| {
+    fn what_fills_its_range_is_thin_beside_others() {
+        let thin = |count: u32, others: &[f64]| {
             let points = (0..count).map(|k| (f64::from(k) / f64::from(count), f64::from(k % 2)));
             let others = others.iter().map(|y| Series::line("", [(0.0, *y), (1.0, *y)]));
             let panel = Panel::new(Axis::between("y", 0.0, 1.0)).with([Series::line("", points)]).with(others);
             Figure::new("f", "t", Axis::between("x", 0.0, 1.0)).panel(panel).to_svg().contains("stroke-opacity")
         };
-        assert!(pale(1000, &[0.5]) && !pale(100, &[0.5]));
-        assert!(!pale(1000, &[]), "alone it hides nothing");
+        assert!(thin(1000, &[0.5]) && !thin(100, &[0.5]));
+        assert!(!thin(1000, &[]), "alone it hides nothing");
+    }
+
+    /// 3:1 is what all colours have at full strength.
+    #[test]
+    fn what_fills_its_range_is_seen_on_paper() {
+        let opacity: f64 = DENSE.split("stroke-opacity=\"").nth(1).unwrap().trim_end_matches('"').parse().unwrap();
+        let over_white = |colour: &str| {
+            let part = |at: usize| f64::from(u8::from_str_radix(&colour[at..at + 2], 16).unwrap());
+            let [r, g, b] = [1, 3, 5].map(|at| (255.0 + opacity * (part(at) - 255.0)).round() as u8);
+            1.05 / (luminance(&format!("#{r:02x}{g:02x}{b:02x}")) + 0.05)
+        };
+        for number in 0..7 {
+            let colour = Colour::Series(number).value(Theme::Paper);
+            assert!(over_white(colour) > 2.4, "{colour} {}", over_white(colour));
+        }
     }
 
     #[test]

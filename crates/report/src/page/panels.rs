@@ -348,6 +348,24 @@ impl Panels {
         who_alternates(&touching.collect::<Vec<_>>())
     }
 
+    /// Which points of a contact are drawn as they are though others are smoothed, in a clause; nothing where all are alike.
+    pub(crate) fn unsmoothed(&self, contact: &ContactDrawn, means: &[Option<Vec<f64>>]) -> Option<String> {
+        let means = &means[contact.first..][..contact.points.len()];
+        if means.iter().all(Option::is_none) {
+            return None;
+        }
+        let points = contact.points.iter().zip(&self.forces[contact.first..]).zip(means);
+        let presses =
+            |forces: &Option<ForceCurve>| forces.as_ref().is_some_and(|of| of.normal.iter().any(|f| *f > 0.0));
+        let raw = points.filter(|((_, forces), mean)| mean.is_none() && presses(forces));
+        let names: Vec<&str> = raw.map(|((point, _), _)| point.label.as_str()).collect();
+        let (last, others) = names.split_last()?;
+        Some(match others {
+            [] => format!("{last} is not smoothed: it presses only now and then"),
+            _ => format!("{} and {last} are not smoothed: they press only now and then", others.join(", ")),
+        })
+    }
+
     /// The tangential force of all points of a contact together, if it is what is drawn.
     fn sum(&self, recorder: &PageRecorder, pair: usize) -> Option<Sum> {
         self.sums_tangential(pair).then_some(())?;

@@ -138,7 +138,7 @@ pub struct BodyVerdict {
     /// How it moves at the end, of one that does and has no other fate.
     #[serde(skip)]
     pub(crate) going: Option<Going>,
-    /// Of one that trembles where it stands: when it last swung, s, if it rocked.
+    /// Of one that trembles or chatters where it stands: when it last swung, s, if it rocked.
     #[serde(skip)]
     pub(crate) stopped_rocking: Option<f64>,
     /// Of one that is shaken where it stands, or hops or bounces there: what it stands on, and in the end on other blocks, in words, if that moves at the end.
@@ -156,7 +156,10 @@ pub struct BodyVerdict {
     /// Of a block that overturned: past which end of the beam that carried it, directly or by others, it has fallen since, and which beam that is.
     #[serde(skip)]
     pub(crate) fell_off: Option<(Way, String)>,
-    /// Whether it still touches that.
+    /// Of a block that overturned to one side, but whose mass centre is on the other side of its start at the end: how far along what carries it, m.
+    #[serde(skip)]
+    pub(crate) aside: Option<f64>,
+    /// Whether it still touches the beam that it left.
     #[serde(skip)]
     pub(crate) touches_beam: bool,
     /// To which side its mass centre was past what it stands on from the start, as that of a plank that reaches too far over an edge: nothing of its
@@ -205,6 +208,16 @@ impl BodyVerdict {
     /// When it settled, s, of one that began in flight.
     pub(crate) fn settled_at(&self) -> Option<f64> {
         self.stands_from.filter(|t| *t > self.start)
+    }
+
+    /// To which side it overturned or left its beam, in words; in which sense it turned where it went to the other side meanwhile.
+    pub(crate) fn way_over(&self) -> String {
+        let side = |way: Way| match self.aside {
+            Some(_) if way == Way::Left => "counter-clockwise".to_owned(),
+            Some(_) => "clockwise".to_owned(),
+            None => format!("to the {}", way.word()),
+        };
+        self.way.map_or_else(String::new, side)
     }
 
     /// Its largest φ/α as it is told: of the lowest block of a column that of all of it; none where nothing of its own brings it back.

@@ -22,6 +22,8 @@ pub(crate) enum Going {
     Vibrates,
     /// It stays where it stands, and is shaken there.
     Trembles,
+    /// It stays about where it stands, but for slips, and its contacts open and close all the time.
+    Chatters,
     /// It stays where it stands on another block, which moves.
     Rides,
     /// A round one turns about as fast as it goes, in the sense of its way.
@@ -32,13 +34,14 @@ pub(crate) enum Going {
 
 impl Going {
     /// All of them, in the order in which many blocks are told.
-    pub(super) const ALL: [Self; 9] = [
+    pub(super) const ALL: [Self; 10] = [
         Self::Falls,
         Self::Flies,
         Self::Bounces,
         Self::Hops,
         Self::Vibrates,
         Self::Trembles,
+        Self::Chatters,
         Self::Rides,
         Self::Rolls,
         Self::Slides,
@@ -53,6 +56,7 @@ impl Going {
             Self::Hops => "at rest but for hops of less than a ten-thousandth of its size",
             Self::Vibrates => "still vibrating on its contacts",
             Self::Trembles => "still trembling where it stands",
+            Self::Chatters => "still chattering where it stands",
             Self::Rides => "standing still on the block below it",
             Self::Rolls => "still rolling",
             Self::Slides => "still sliding",
@@ -61,7 +65,7 @@ impl Going {
 
     /// Whether it stays where it is on what carries it.
     pub(super) fn stays(self) -> bool {
-        matches!(self, Self::Hops | Self::Vibrates | Self::Trembles | Self::Rides)
+        matches!(self, Self::Hops | Self::Vibrates | Self::Trembles | Self::Chatters | Self::Rides)
     }
 
     /// The same of several, after "are".
@@ -70,6 +74,7 @@ impl Going {
             Self::Hops => "at rest but for hops of less than a ten-thousandth of their sizes",
             Self::Vibrates => "still vibrating on their contacts",
             Self::Trembles => "still trembling where they stand",
+            Self::Chatters => "still chattering where they stand",
             Self::Rides => "standing still on the blocks below them",
             other => other.word(),
         }
@@ -95,7 +100,12 @@ pub(super) struct Touched {
     highest: f64,
     /// How far that flight rose above where it left, or ended below, m.
     rose: f64,
+    /// The ends of the last steps in which a contact of it closed, the latest first, s.
+    closed: [Option<f64>; CHATTERS],
 }
+
+/// What closes a contact in so many steps, in the time after which what doesn't swing has stopped rocking, chatters.
+const CHATTERS: usize = 4;
 
 /// What neither rises nor falls by this part of R over what carries it doesn't bounce, however long it touches nothing: it rides on a beam that moves up and
 /// down, micrometres above it. In free flight that takes as long as [`FLIGHT`].
@@ -134,8 +144,9 @@ impl Fates {
                 }
             }
         }
-        let pressing = pressing();
-        for body in pressing.flat_map(|contact| [0, 1].map(|side| contact.sides[side].body.0 as usize)) {
+        for (body, closes) in
+            pressing().flat_map(|contact| [0, 1].map(|side| (contact.sides[side].body.0 as usize, !contact.persisting)))
+        {
             let (Some(Seen { touched, .. }), Some(watched)) = (self.blocks.get_mut(body), watch.blocks.get(body))
             else {
                 continue;
@@ -146,6 +157,10 @@ impl Fates {
                 touched.rose = if touched.last.is_some() { touched.strayed() } else { f64::INFINITY };
             }
             (touched.last, touched.left, touched.highest) = (Some(t), touched.now, touched.now);
+            if closes && touched.closed[0] != Some(t) {
+                touched.closed.rotate_right(1);
+                touched.closed[0] = Some(t);
+            }
         }
         self.find_lifted(watch, step, t);
         for Seen { touched, .. } in &mut self.blocks {
@@ -187,6 +202,11 @@ impl Touched {
     /// Whether nothing has touched a block in the time before `t`, s, for longer than what rocks hops. Not at the start, before the first step.
     pub(super) fn flies(&self, t: f64, watched: &Watched) -> bool {
         self.last.map_or(self.was_free, |last| t - last >= FLIGHT * watched.still_time)
+    }
+
+    /// Whether it has closed contacts again and again since the time `since`, s.
+    pub(super) fn chatters(&self, since: f64) -> bool {
+        self.closed.iter().all(|closed| closed.is_some_and(|closed| closed >= since))
     }
 
     /// Takes in how high over what carries it a block is at the end of a step, m.

@@ -211,9 +211,12 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
         .as_ref()
         .map_or_else(String::new, |(way, beam)| format!(", then fell off the {} end of `{beam}`", way.word()));
     let on = of.on_what_moves.map_or_else(String::new, |what| format!(", on {what} that moves"));
+    // What is thrown to one side may turn over to the other: that would mislead without where it is.
+    let over = of.way_over();
+    let aside_over = of.aside.map_or_else(String::new, |at| format!(", in the end {}", place(scene, of, at)));
     let fate = match of.what {
         Fate::Overturned if of.t == Some(of.start) => {
-            format!("began past its critical angle and overturned to the {way}{off}{turned}{then_rested}")
+            format!("began past its critical angle and overturned {over}{aside_over}{off}{turned}{then_rested}")
         }
         Fate::Overturned => {
             let with = of.overturned_with.as_ref().map_or_else(String::new, |lowest| match *lowest == of.body {
@@ -222,7 +225,7 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             });
             let fell = of.fell_at.filter(|fell| of.t.is_some_and(|t| *fell < t));
             let fell = fell.map_or_else(String::new, |t| format!("fell from its place at {}, ", time(t)));
-            format!("{fell}overturned{with} to the {way}{at}{off}{turned}{then_rested}")
+            format!("{fell}overturned{with} {over}{at}{aside_over}{off}{turned}{then_rested}")
         }
         Fate::Left => {
             let beam = of.left_beam.as_ref().map_or_else(|| "its beam".to_owned(), |name| format!("`{name}`"));

@@ -139,7 +139,13 @@ impl Seen {
         let stands = moves && part.is_some() && !rocked && (has_stopped || self.slides.most() < 0.1 * least);
         let stands = stands || (what == Fate::Moves && has_stood && for_an_instant);
         let trembles = || (stands && turning.is_none()).then_some(Going::Trembles);
-        let going = going.or_else(trembles);
+        // It slips by less than is told, but does so all the time.
+        let chatters = moves
+            && part.is_some()
+            && turning.is_none()
+            && !rocked
+            && self.touched.chatters(state.t - FLAT * watched.still_time);
+        let going = going.or_else(trembles).or(chatters.then_some(Going::Chatters));
         let rocks_on = || {
             Side::below(block, watched.outline.as_ref()?, self.stance(watched)?.flat).filter(|_| what == Fate::Rocks)
         };
@@ -220,7 +226,8 @@ impl Seen {
             stopped_rocking: self
                 .swung
                 .map(|(last, _)| last)
-                .filter(|_| going == Some(Going::Trembles) && has_stood && part.is_some_and(|part| part >= ROCKED)),
+                .filter(|_| going == Some(Going::Chatters) || (going == Some(Going::Trembles) && has_stood))
+                .filter(|_| part.is_some_and(|part| part >= ROCKED)),
             tips,
             unmoved_from: self.unmoved.filter(|since| rests.is_some() && state.t - since >= watched.still_time),
             stood_on: beam(taken_along || (is_here && self.never_moved(watched, least))),
@@ -229,6 +236,8 @@ impl Seen {
                 .then(|| watched.carrier.below_an_end([q[0], q[1]], watched.reach, layout, &state.q))
                 .flatten()
                 .map(|(way, beam)| (way, layout.beams[beam].name.clone())),
+            aside: Some(watched.centre(layout, number, state) - self.released)
+                .filter(|at| what == Fate::Overturned && way.is_some_and(|way| way.sign() * at >= least)),
             touches_beam: what == Fate::Left && touches_beam,
             past_edge: self.past_edge,
             overturned_with: None,

@@ -58,7 +58,7 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
             parts.push(format!("`{}` {}", one.body, headline::one(scene, one, end)));
             return;
         }
-        let way = earliest.way.map_or_else(String::new, |way| format!(" to the {}", way.word()));
+        let way = earliest.way.map_or_else(String::new, |_| format!(" {}", earliest.way_over()));
         let when = match earliest.t {
             Some(t) if t == earliest.start && earliest.what == Fate::Overturned => " from the start".to_owned(),
             t => t.map_or_else(String::new, |t| format!(" at {}", time(t))),
@@ -82,9 +82,9 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
         for base in columns.iter().filter(|of| of.overturned_with.as_ref() == Some(&of.body)) {
             let column: Vec<_> =
                 columns.iter().copied().filter(|of| of.overturned_with.as_ref() == Some(&base.body)).collect();
-            let way = base.way.map_or("", |way| way.word());
+            let way = base.way_over();
             let when = base.t.map_or_else(String::new, |t| format!(" at {}", time(t)));
-            let what = format!("overturned as one column on the base of `{}` to the {way}{when}", base.body);
+            let what = format!("overturned as one column on the base of `{}` {way}{when}", base.body);
             falls.push((column, what, ""));
         }
         // In the order in which they did.
@@ -114,7 +114,8 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
     for base in bases.iter().filter(|base| base.what != Fate::Rocks) {
         let column: Vec<_> = verdict.iter().filter(|of| is_on(of, base)).collect();
         let last = column.iter().filter_map(|of| of.rests_from).fold(0.0, f64::max);
-        let trembles = |of: &&BodyVerdict| matches!(of.going, Some(Going::Trembles | Going::Vibrates));
+        let trembles =
+            |of: &&BodyVerdict| matches!(of.going, Some(Going::Trembles | Going::Chatters | Going::Vibrates));
         let then = match () {
             () if column.iter().all(|of| of.rests_from.is_some()) => format!(", came to rest, last at {}", time(last)),
             () if column.iter().any(trembles) => " and still tremble".to_owned(),
@@ -226,7 +227,9 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
             // Those of which it is unknown have none.
             false => "all",
         };
-        let of = if whose == "the column" { String::new() } else { format!(" (`{}`)", of.body) };
+        // What fell there may have flown at a larger angle, as the sentence on a single block says.
+        let since = if of.settled_at().is_some() { ", since it settled" } else { "" };
+        let of = if whose == "the column" { String::new() } else { format!(" (`{}`{since})", of.body) };
         text.push_str(&format!("; largest φ/α of {whose} {}{of}", part(largest)));
     }
     if collapsed { format!("collapsed: {text}") } else { text }

@@ -1,6 +1,7 @@
 //! The sentence on what became of a scene, where a word would say more than is true.
 
 use crate::page::{run, run_from, scenario};
+use crate::plots::table;
 use crate::sizes::tile;
 use teeter_report::half_cycles;
 
@@ -38,17 +39,53 @@ fn why_a_block_on_a_beam_has_no_half_cycles_is_told() {
     assert!(beside.html.contains(&told), "{told}");
 }
 
-/// A cube that is dropped near the end of a cantilever bounces, and turns by degrees as it does; 0.2 s later it still does, whatever the step.
-#[test]
-fn why_what_bounces_on_a_beam_has_no_half_cycles_is_told() {
-    let text = "[time]\nend = '0.2 s'\nstep = '100 us'\n[material.steel]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n[beam.shelf]\n\
+const CANTILEVER: &str = "[time]\nend = '0.2 s'\nstep = '100 us'\n[material.steel]\ndensity = '7850 kg/m^3'\nyoungs_modulus = '210 GPa'\n[beam.shelf]\n\
         material = 'steel'\nspan = '60 cm'\nwidth = '4 cm'\nthickness = '6 mm'\nelements = 24\nsupports = ['clamped', 'free']\n\
         damping_ratio = { mode = 1, ratio = 0.02 }\n[block.cube]\ndensity = '2000 kg/m^3'\nwidth = '4 cm'\nheight = '4 cm'\ndepth = '4 cm'\n\
         position = ['50 cm', '7 cm']\n[contact.c]\nbetween = ['cube', 'shelf']\nfriction = 0.4\nrestitution = 0.3\n";
-    let html = run("cube-on-cantilever", text).html;
+
+/// A cube that is dropped near the end of a cantilever bounces, and turns by degrees as it does; 0.2 s later it still does, whatever the step.
+#[test]
+fn why_what_bounces_on_a_beam_has_no_half_cycles_is_told() {
+    let html = run("cube-on-cantilever", CANTILEVER).html;
     assert!(html.contains(
         "of what turns to and fro only before it has settled on its beam, as what bounces does: cube passed "
     ));
+}
+
+/// At 0.8 s its last swing is 0.3 s ago; it slips to and fro by 60 µm as its corners bounce on the tip.
+#[test]
+fn what_slips_a_little_as_its_contacts_open_and_close_chatters() {
+    let text = CANTILEVER.replace("end = '0.2 s'", "end = '0.8 s'").replace("'50 cm', '7 cm'", "'57 cm', '7 cm'");
+    let headline = run("chatters-on-a-tip", &text).summary.headline;
+    let told = "`cube` stopped rocking at t = 475.5 ms, is still chattering where it stands, on a beam that moves (";
+    assert!(headline.starts_with(told), "{headline}");
+}
+
+/// It is thrown to the right and turns counter-clockwise, to its left: neither side alone says what it did.
+#[test]
+fn what_turns_over_against_its_way_is_told_how_it_turned_and_where_it_is() {
+    let thrown = |velocity: f64| {
+        let text = format!(
+            "[time]\nend = '2 s'\nstep = '200 us'\n[ground]\n[block.b]\ndensity = '2400 kg/m^3'\nwidth = '10 cm'\nheight = '30 cm'\n\
+             depth = '10 cm'\non = 'ground'\nat = '0 m'\nvelocity = ['{velocity} m/s', '0 m/s']\nspin = '8 rad/s'\n\
+             [contact.c]\nbetween = ['b', 'ground']\nfriction = 0.05\n"
+        );
+        run(&format!("thrown-{velocity}"), &text)
+    };
+    let right = thrown(2.0);
+    let headline = &right.summary.headline;
+    let rest =
+        headline.strip_prefix("`b` overturned counter-clockwise at t = ").unwrap_or_else(|| panic!("{headline}"));
+    let (at, _) = rest
+        .split_once(" ms, in the end ")
+        .and_then(|(_, place)| place.split_once(" m right of its start"))
+        .unwrap_or_else(|| panic!("{headline}"));
+    let rows = table(&right.folder.join("trajectory.csv"));
+    let (_, x) = rows.iter().find(|(name, _)| name == "b.x").unwrap();
+    assert!((x[x.len() - 1] - x[0] - at.parse::<f64>().unwrap()).abs() < 1e-3, "{headline}");
+    let left = thrown(-2.0).summary.headline;
+    assert!(left.starts_with("`b` overturned to the left at t = ") && !left.contains("in the end"), "{left}");
 }
 
 /// A run that goes on from the state of another one begins with what stands there standing: it wasn't released in flight.
@@ -412,6 +449,16 @@ fn the_largest_angle_of_what_flew_counts_since_it_settled() {
     let ran = run("dropped-tilted", text);
     assert!(ran.summary.headline.contains(" (largest φ/α since it settled 0.1"), "{}", ran.summary.headline);
     assert!(ran.html.contains("<dt>Largest φ/α since it settled at t = "));
+    // Among more than two, too.
+    let others = ["left", "right"].map(|name| {
+        let at = if name == "left" { "-1 m" } else { "1 m" };
+        format!(
+            "[block.{name}]\ndensity = '2400 kg/m^3'\nwidth = '20 cm'\nheight = '10 cm'\ndepth = '10 cm'\non = 'ground'\nat = '{at}'\n\
+             [contact.{name}]\nbetween = ['{name}', 'ground']\nfriction = 0.4\n"
+        )
+    });
+    let three = run("dropped-beside", &format!("{text}{}", others.concat())).summary.headline;
+    assert!(three.contains("; largest φ/α of all 0.1") && three.ends_with(" (`brick`, since it settled)"), "{three}");
 }
 
 #[test]

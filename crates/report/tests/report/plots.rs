@@ -494,11 +494,18 @@ contact.c = { between = ["crate", "deck"], friction = 0.4, restitution = 0.3 }
     let names = &page["scenery"]["contacts"][0]["points"];
     let feet: Vec<&str> = feet.map(|point| names[point as usize]["label"].as_str().unwrap()).collect();
     assert_eq!(feet, ["bottom right", "top right"]);
+    // The others are drawn as they are, in the same plot, and it says so.
+    let told = page["forces"]["unsmoothed"][0][1].as_str().unwrap();
+    assert!(told.ends_with(" not smoothed: they press only now and then"), "{told}");
     let svg = figures(&run.page).into_iter().find(|(file, _)| file == "contact_forces.svg").unwrap().1;
     let pale = |colour: &str| {
-        svg.matches(&format!("stroke=\"{colour}\" stroke-dasharray=\"none\" stroke-width=\".5\" stroke-opacity=\".2\""))
-            .count()
+        svg.matches(&format!(
+            "stroke=\"{colour}\" stroke-dasharray=\"none\" stroke-width=\".5\" stroke-opacity=\".35\""
+        ))
+        .count()
     };
+    // The note is broken into lines.
+    assert!(["now and then", "press only"].iter().any(|words| svg.contains(words)), "{svg}");
     assert!(pale("#e05206") > 0 && pale("#e05206") == pale("#00a078"), "{} {}", pale("#e05206"), pale("#00a078"));
 }
 
@@ -524,6 +531,24 @@ fn energies_on_the_page_are_those_of_the_table_to_a_millionth_of_their_range() {
     assert!(line["y"]["unit"].as_f64().unwrap() <= 1.01e-6 * (high - low), "{}", line["y"]["unit"]);
     let lost = (total[total.len() - 1] - total[0]) * per_joule;
     assert!((y[y.len() - 1] - y[0] - lost).abs() <= 2e-6 * (high - low), "{} {lost}", y[y.len() - 1] - y[0]);
+}
+
+/// Blocks that stand apart are drawn from their starts in the portrait of a coordinate, as in its plot: the curves lie over each other.
+#[test]
+fn a_portrait_of_blocks_that_stand_apart_is_from_their_starts() {
+    let text = include_str!("../../../../scenarios/dry-stone-wall.toml");
+    let run = run("wall-portrait", text);
+    let portrait = &data(&run.html)["portraits"][0].clone();
+    assert_eq!(portrait["title"], "Phase portrait: ẋ over x − x₀");
+    assert_eq!(portrait["x_label"], "Displacement x − x₀ relative to the ground (cm)");
+    let series = portrait["series"].as_array().unwrap();
+    assert!(series.len() > 5);
+    for line in series {
+        let x = numbers(&line["x"]);
+        assert!(x[0].abs() < 1e-6 && x.iter().all(|x| x.abs() < 3.0), "{}", line["label"]);
+    }
+    let (_, figure) = figures(&run.page).into_iter().find(|(file, _)| file == "phase_x.svg").unwrap();
+    assert!(figure.contains("Displacement x − x₀ relative to the ground (cm)"));
 }
 
 /// A disc on a table that is shaken: each portrait is of the disc, and says so, as the other one could be another block's.

@@ -297,6 +297,9 @@ fn figures_and_page_of_a_long_run_open_where_something_moves() {
     let run = run("long-wait", text);
     let ends = numbers(&data(&run.html)["moving"]["moves"]);
     assert!((8.0..8.5).contains(&ends[0]) && (9.0..9.5).contains(&ends[1]), "{ends:?}");
+    // The push grows from 8 s on, before anything moves.
+    let shown = numbers(&data(&run.html)["moving"]["shown"]);
+    assert!(shown[0] < 8.0 && shown[1] > ends[1], "{shown:?}");
     let svg = figure(&figures(&run.page), "x.svg");
     assert!(svg.contains("Time t (s), of a run to 20 s") && svg.contains(">9.0<") && !svg.contains(">15<"), "{svg}");
     // Forces and energies may change where nothing moves.
@@ -304,6 +307,11 @@ fn figures_and_page_of_a_long_run_open_where_something_moves() {
         assert!(!figure(&figures(&run.page), file).contains("of a run to"), "{file}");
     }
     assert!(data(&scenario("sliding").html)["moving"].is_null(), "it moves for most of the run");
+    // Where half of the axis and more would be rest they open on the motion, too.
+    let sliding = include_str!("../../../../scenarios/sliding.toml");
+    let longer = crate::page::run("slides-and-rests", &sliding.replace("end  = \"0.5 s\"", "end  = \"1 s\""));
+    let shown = numbers(&data(&longer.html)["moving"]["shown"]);
+    assert!(shown[0] == 0.0 && (0.4..0.5).contains(&shown[1]), "{shown:?}");
     // It is thrown over by the first of many cycles, and lies still on ground that goes on.
     let shaken = "[time]\nend = '20 s'\nstep = '1 ms'\n[ground]\nmotion = { acceleration = ['4 m/s^2', '0 m/s^2'], signal = 'shake' }\n\
         [signal.shake]\nshape = 'harmonic'\nfrequency = '1 Hz'\n[block.box]\ndensity = '800 kg/m^3'\nwidth = '10 cm'\nheight = '50 cm'\n\

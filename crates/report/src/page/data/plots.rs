@@ -221,6 +221,9 @@ pub(super) struct ForceData {
     /// Contacts of which some points stick and slip by turns, with the names of these: the band shows what they do in most of a stretch.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     alternating: Vec<(usize, String)>,
+    /// Contacts of which some points are drawn as they are though others are smoothed, with which these are.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    unsmoothed: Vec<(usize, String)>,
     /// Contacts that slip by so little in a stretch that it is drawn as sticking, with the most of it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     unseen_slip: Vec<(usize, String)>,
@@ -361,6 +364,7 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         |drawn: &ContactDrawn| panels.forces[drawn.first..drawn.first + drawn.points.len()].iter().flatten();
     let hiding = contacts().filter(|(_, drawn)| forces_of(drawn).any(|forces| forces.hides_slip));
     let alternating = contacts().filter_map(|(pair, drawn)| Some((pair, panels.alternating(drawn)?)));
+    let unsmoothed = contacts().filter_map(|(pair, drawn)| Some((pair, panels.unsmoothed(drawn, &means)?)));
     let sums = panels
         .sums
         .iter()
@@ -384,6 +388,7 @@ pub(super) fn forces(recorder: &PageRecorder, panels: &Panels) -> ForceData {
         shares: (0..panels.redundant.len()).filter(|pair| panels.sums_tangential(*pair)).collect(),
         sums: sums.map(|(pair, sum)| (pair, Column::of(&sum.y, SEEN_BELOW_PEAKS))).collect(),
         alternating: alternating.collect(),
+        unsmoothed: unsmoothed.collect(),
         unseen_slip: hiding.map(|(pair, drawn)| (pair, with_digits(unseen_slip(recorder, drawn), "m", 1))).collect(),
         compliant: contacts().filter(|(_, drawn)| drawn.has_duration).map(|(pair, _)| pair).collect(),
         points: points.collect(),

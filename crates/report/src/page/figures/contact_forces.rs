@@ -36,8 +36,7 @@ impl Plots<'_> {
                 let [factor, sideways] = self.panels.force_units[pair].map(|(_, factor)| factor);
                 let step = |y: &[f64], factor: f64, label: &str| {
                     let end = borders.last().copied().unwrap_or_default();
-                    Series::staircase(label, borders.iter().copied().zip(y.iter().map(|y| factor * y)), end)
-                        .number(point)
+                    Series::means(label, borders.iter().copied().zip(y.iter().map(|y| factor * y)), end).number(point)
                 };
                 let line = |y: &[f64], factor: f64, label: &str| {
                     let points = self.t.iter().copied().zip(y.iter().map(|y| factor * y));
@@ -123,10 +122,14 @@ impl Plots<'_> {
                 let meant = meant.filter(|note| about_pale || note.about != About::Pale);
                 let strong = (has_means && !contact.has_duration)
                     .then(|| Note::of_plot(format!("strong: without vibrations of periods below {period}")));
+                let unsmoothed = (has_means && !contact.has_duration)
+                    .then(|| self.panels.unsmoothed(contact, &means_of_points).map(Note::of_plot))
+                    .flatten();
                 let many = self.panels.redundant[pair].note(what == "Tangential").map(Note::of_plot);
                 let turns = self.panels.alternating(contact).filter(|_| what == "Tangential");
                 let turns = turns.map(|who| Note::of_plot(format!("{who} by turns")));
-                let notes = [name.clone(), meant, strong, turns, told, many].into_iter().flatten().collect();
+                let notes =
+                    [name.clone(), meant, strong, unsmoothed, turns, told, many].into_iter().flatten().collect();
                 panels.push((self.marked(Panel::new(y).with(lines).telling_apart(), Some(pair)), notes));
                 panels.extend(enlarged);
             }

@@ -1,7 +1,7 @@
 //! The numbers of the summary: those that one wants to know first as tiles, all others as a table.
 
 use super::{scientific, with_code, with_prefix_of};
-use crate::all_digits::with_all_digits;
+use crate::all_digits::{with_all_digits, with_zeros};
 use crate::page::content;
 use crate::verdict::{BodyVerdict, MORE, ROCKED, part};
 use crate::{Summary, shortest, with_digits};
@@ -120,7 +120,7 @@ fn lost(lost: f64, summary: &Summary) -> String {
     if !content::holds(lost.abs(), summary.energy.scale) {
         return "0 J".to_owned();
     }
-    with_all_digits(lost, "J", 3).replace('-', "\u{2212}")
+    with_zeros(lost, "J", 3).replace('-', "\u{2212}")
 }
 
 /// The largest φ/α of a scene, as the sentence at its head counts it.
@@ -281,6 +281,8 @@ pub(super) fn numbers(values: &Numbers, summary: &Summary) -> String {
             {
                 "0 J".to_owned()
             }
+            // An energy that is a round number has the digits of those beside it.
+            (Ok(x), Some("J")) => with_zeros(x, "J", 6).replace('-', "\u{2212}"),
             (Ok(x), Some(unit)) => with_digits(x, unit, 6).replace('-', "\u{2212}"),
             (Ok(x), None) if text.contains('e') => scientific(x),
             (Ok(x), None) if text.contains('.') => shortest(x, 3).replace('-', "\u{2212}"),

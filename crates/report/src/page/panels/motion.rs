@@ -16,7 +16,8 @@ pub(super) struct Coordinate {
     pub(super) velocity_symbol: &'static str,
     pub(super) name: &'static str,
     /// As measured from the start.
-    from_start: &'static str,
+    pub(super) from_start: &'static str,
+    pub(super) symbol_from_start: &'static str,
     pub(super) velocity_name: &'static str,
 }
 
@@ -30,6 +31,7 @@ pub(super) const COORDINATES: [Coordinate; 3] = [
         velocity_symbol: "ẋ",
         name: "Position x",
         from_start: "Displacement x − x₀",
+        symbol_from_start: "x − x₀",
         velocity_name: "Velocity ẋ",
     },
     Coordinate {
@@ -40,6 +42,7 @@ pub(super) const COORDINATES: [Coordinate; 3] = [
         velocity_symbol: "ẏ",
         name: "Height y",
         from_start: "Displacement y − y₀",
+        symbol_from_start: "y − y₀",
         velocity_name: "Velocity ẏ",
     },
     Coordinate {
@@ -50,6 +53,7 @@ pub(super) const COORDINATES: [Coordinate; 3] = [
         velocity_symbol: "ω",
         name: "Angle φ",
         from_start: "Angle φ − φ₀",
+        symbol_from_start: "φ − φ₀",
         velocity_name: "Angular velocity ω",
     },
 ];
@@ -92,11 +96,8 @@ impl Panels {
         let of_whom = if rolls { ", of what turns by more than 180°" } else { "" };
         let reach = recorder.scenery.blocks.iter().fold(0.0, |most: f64, block| most.max(block.reach));
         // Blocks that stand far apart would all look still, but for a few.
-        let from_start = c != PHI && moving.len() > 1 && usual_travel(&moving) < FAR * extent(&moving);
-        let zero = |k: usize| match recorder.kept.frames.rows().next() {
-            Some((_, start)) if from_start => coordinate_in(recorder, start, k, c),
-            _ => 0.0,
-        };
+        let from_start = is_from_start(c, &moving);
+        let zero = |k: usize| if from_start { zero(recorder, k, c) } else { 0.0 };
         // Lengths are in metres until the units of the page are chosen.
         let (unit, factor) = if c == PHI { (display.angle.symbol(), display.angle.per_radian()) } else { ("", 1.0) };
         let measures = if c == PHI { [Measure::Own; 2] } else { [Measure::Position, Measure::Velocity] };
@@ -181,6 +182,16 @@ pub(super) fn from_base(recorder: &PageRecorder, curves: &Curves, coordinate: us
 
 /// Where most blocks don't go farther than this part of the range in which all of them are, they are drawn from their starts.
 const FAR: f64 = 0.5;
+
+/// Whether a coordinate of these blocks is drawn from where each of them started.
+pub(super) fn is_from_start(c: usize, moving: &[(usize, Vec<f64>)]) -> bool {
+    c != PHI && moving.len() > 1 && usual_travel(moving) < FAR * extent(moving)
+}
+
+/// Where a block starts in a coordinate.
+pub(super) fn zero(recorder: &PageRecorder, k: usize, c: usize) -> f64 {
+    recorder.kept.frames.rows().next().map_or(0.0, |(_, start)| coordinate_in(recorder, start, k, c))
+}
 
 /// What half of the blocks don't go farther than: of two, the way of the one that goes less far.
 fn usual_travel(moving: &[(usize, Vec<f64>)]) -> f64 {

@@ -1,6 +1,6 @@
 //! Phase portraits of blocks: a coordinate and its velocity, one over the other.
 
-use super::motion::{COORDINATES, PHI, block_label, from_base, guides, nears};
+use super::motion::{COORDINATES, PHI, block_label, from_base, guides, is_from_start, nears, zero};
 use super::{Measure, Panels, Portrait, PortraitLine, coincident};
 use crate::page::content::{holds, largest, travel};
 use crate::page::orbit::Point;
@@ -35,8 +35,9 @@ impl Panels {
         let moves = |k: usize, c: usize| travel(&self.curves.curve(BLOCK_COLUMNS * k + c));
         let rocks = |k: usize| holds(moves(k, PHI), 1.0) && moves(k, PHI) <= PI;
         let others_rock = (0..recorder.scenery.blocks.len()).any(rocks);
+        let reach_of = |k: usize| recorder.scenery.blocks[k].reach;
         let choice = |k: usize| {
-            let reach = recorder.scenery.blocks[k].reach;
+            let reach = reach_of(k);
             // What is prescribed would have the portrait of its signal.
             let free = recorder.scenery.blocks[k].prescribed.map(|prescribed| if prescribed { 0.0 } else { 1.0 });
             let [x, y, turn] = [0, 1, PHI].map(|c| free[c] * moves(k, c));
@@ -62,11 +63,19 @@ impl Panels {
             }
             let points =
                 |k: usize| recorder.kept.orbits[BLOCK_COORDINATES * k + c].points(PORTRAIT_POINTS / chosen.len());
-            let orbits: Vec<(usize, Vec<Point>)> = blocks().filter_map(|k| Some((k, points(k)?))).collect();
+            let mut orbits: Vec<(usize, Vec<Point>)> = blocks().filter_map(|k| Some((k, points(k)?))).collect();
             let untraced = blocks().filter(|k| orbits.iter().all(|(drawn, _)| drawn != k));
             self.untraced.extend(untraced.map(|k| recorder.scenery.blocks[k].name.clone()));
             if orbits.is_empty() {
                 continue;
+            }
+            // As the plot of the coordinate, so that what stands far apart isn't a row of upright lines.
+            let moving = (0..recorder.scenery.blocks.len()).filter(|k| holds(moves(*k, c), reach_of(*k)));
+            let moving: Vec<_> = moving.map(|k| (k, self.curves.curve(BLOCK_COLUMNS * k + c))).collect();
+            let from_start = orbits.len() > 1 && is_from_start(c, &moving);
+            for (k, points) in orbits.iter_mut().filter(|_| from_start) {
+                let zero = zero(recorder, *k, c);
+                points.iter_mut().for_each(|point| point[1] -= zero);
             }
             let (units, factors) = if c == PHI {
                 ([display.angle.symbol(), "rad"], [display.angle.per_radian(), 1.0])
@@ -91,7 +100,7 @@ impl Panels {
                 }
             };
             let coordinate = &COORDINATES[c];
-            let reach = blocks().map(|k| recorder.scenery.blocks[k].reach).fold(0.0, f64::max);
+            let reach = blocks().map(reach_of).fold(0.0, f64::max);
             // Of several, only of those that come near: nobody could tell whose the others are.
             let alone = orbits.len() == 1;
             let near = |(k, points): &(usize, Vec<Point>)| {
@@ -108,6 +117,10 @@ impl Panels {
                 count => Some(format!("{count} curves coincide, wholly or in part")),
             };
             let notes: Vec<String> = strong.into_iter().chain(coincide).collect();
+            let (symbol, name) = match from_start {
+                true => (coordinate.symbol_from_start, coordinate.from_start),
+                false => (coordinate.symbol, coordinate.name),
+            };
             // A single curve has no legend, and another portrait may be another block's.
             let whose = match &lines[..] {
                 [line] if recorder.scenery.blocks.len() > 1 => format!(" of {}", line.label),
@@ -115,8 +128,8 @@ impl Panels {
             };
             let portrait = Portrait {
                 id: ["phase_x", "phase_y", "phase"][c],
-                title: format!("Phase portrait{whose}: {} over {}", coordinate.velocity_symbol, coordinate.symbol),
-                x_label: format!("{}{on}", coordinate.name),
+                title: format!("Phase portrait{whose}: {} over {}", coordinate.velocity_symbol, symbol),
+                x_label: format!("{name}{on}"),
                 y_label: format!("{}{on}", coordinate.velocity_name),
                 x_unit: units[0].to_owned(),
                 y_unit: format!("{}/s", units[1]),
