@@ -139,7 +139,10 @@ impl<const D: usize> MoreauJeanLocated<D> {
     /// Impacts and ends of slides that are located in a step. What comes after them in the same step is taken as a
     /// fixed step takes it: an open contact closes where the rest of the step would end in its
     /// surface.
-    pub const MOST_IMPACTS: usize = 8;
+    pub const MOST_IMPACTS: usize = 64;
+
+    /// The same where anything is elastic: contacts chatter there, and the order of their closures depends on rounding.
+    pub const MOST_ELASTIC_IMPACTS: usize = 8;
 
     /// The name by which users choose it.
     pub const NAME: &'static str = "moreau-jean-located";
@@ -239,7 +242,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         from.memory.reserve(contacts);
         self.from = Some(Box::new(from));
         let jumps = if model.parts().iter().any(|part| part.traits.loaded) { MOST_JUMPS } else { 0 };
-        work.reserve_phases(model, 2 * Self::MOST_IMPACTS + jumps + 1);
+        work.reserve_phases(model, 2 * Self::MOST_ELASTIC_IMPACTS + jumps + 1);
         // A part of a step will need a factor of its own, and an impact that of the masses.
         work.factors(model, MASSES, &state.q, Keep::Pinned)?;
         work.factors(model, weights(0.5 * state.dt, THETA), &state.q, Keep::Once)?;
@@ -370,7 +373,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
                 self.step.begin(model, from, &rest, work)?;
                 self.step.of_step = rest.h / span.h;
             }
-            let too_many = impacts == Self::MOST_IMPACTS;
+            let too_many = impacts == if self.has_elastic { Self::MOST_ELASTIC_IMPACTS } else { Self::MOST_IMPACTS };
             self.unlocated |= too_many || !struck;
             let (outcome, found) = if too_many || !struck {
                 (self.step.settle(model, from, &rest, work)?, None)

@@ -12,6 +12,9 @@ use teeter_detect::Candidate;
 /// What [`EventDriven::touching_gap`] is in tolerances of a gap.
 const TOUCHING: f64 = 10.0;
 
+/// Blows at an instant: those of contacts that send a body to and fro die out by a tenth to a half each.
+const MOST_BLOWS: usize = 200;
+
 /// What turns round within so many tolerances of a gap doesn't strike: the time of a touch is known to that.
 const GRAZING: f64 = 4.0;
 
@@ -96,21 +99,8 @@ impl EventDriven {
             self.a_pressed.extend_from_slice(&self.smooth.a);
         }
         self.smooth.accelerate_freely(model, t, &from.q, &from.v, work)?;
-        if let Some(fastest) = self.approach(model, from, work)? {
-            self.ids.clear();
-            self.ids.extend(self.smooth.contacts.iter().map(|contact| contact.id));
-            from.memory.forget_contacts();
-            self.ids.iter().for_each(|id| from.memory.activate(*id));
-            // U²/2a is the height of a bounce.
-            let height = LOWEST_BOUNCE * self.located.tolerance(&from.q);
-            let time = (2.0 * height / fastest).sqrt();
-            let by_forces = self.smooth.a.iter().map(|a| time * a);
-            // Where several impulses satisfy the law, contacts go on as they did.
-            from.warm.clear();
-            self.smooth.contacts.iter().for_each(|contact| from.warm.push(contact.id, &(contact.force * time)));
-            self.located.strike_by(model, from, &self.ids, by_forces, &self.in_lowest_bounce, work)?;
-            from.warm.clear();
-            self.smooth.accelerate_freely(model, t, &from.q, &from.v, work)?;
+        if !self.let_strike(model, from, work)? {
+            return Ok(false);
         }
         self.returning.clear();
         // Each round holds one contact more, so it ends.
@@ -121,6 +111,34 @@ impl EventDriven {
             }
             self.smooth.accelerate_freely(model, t, &from.q, &from.v, work)?;
         }
+    }
+
+    /// Lets the contacts that approach strike, one blow after the other where a blow sends off what another one brings back before it has
+    /// gone further than a gap is known; whether that ends.
+    fn let_strike(&mut self, model: &Model<2>, from: &mut State, work: &mut Workspace<2>) -> Result<bool, StepError> {
+        let t = self.smooth.between[0];
+        for blow in 0..MOST_BLOWS {
+            let Some(fastest) = self.approach(model, from, work)? else { return Ok(true) };
+            // U²/2a is the height of a bounce.
+            let height = LOWEST_BOUNCE * self.located.tolerance(&from.q);
+            let time = (2.0 * height / fastest).sqrt();
+            self.ids.clear();
+            if blow == 0 {
+                self.ids.extend(self.smooth.contacts.iter().map(|contact| contact.id));
+                from.memory.forget_contacts();
+                self.ids.iter().for_each(|id| from.memory.activate(*id));
+                // Where several impulses satisfy the law, contacts go on as they did.
+                from.warm.clear();
+                self.smooth.contacts.iter().for_each(|contact| from.warm.push(contact.id, &(contact.force * time)));
+            } else {
+                self.ids.extend_from_slice(from.memory.active());
+            }
+            let by_forces = self.smooth.a.iter().map(|a| time * a);
+            self.located.strike_by(model, from, &self.ids, by_forces, &self.in_lowest_bounce, work)?;
+            from.warm.clear();
+            self.smooth.accelerate_freely(model, t, &from.q, &from.v, work)?;
+        }
+        Ok(false)
     }
 
     /// The contacts that press and the candidates, which are as near.

@@ -118,6 +118,7 @@ impl<const D: usize> MoreauJeanLocated<D> {
             candidates.truncate(kept);
             work.candidates = candidates;
         }
+        self.leave_out_what_parts(model, from, work)?;
         let Self { impact, near, .. } = self;
         impact.clear();
         let mut add = |candidate: &Candidate<D>| -> Result<(), Mismatch> {
@@ -135,6 +136,33 @@ impl<const D: usize> MoreauJeanLocated<D> {
             add(candidate)?;
         }
         closed.try_for_each(add)
+    }
+
+    /// Leaves out the candidates that a blow has sent off just before: they are open, however small their gap, and take no part in the next
+    /// blow, but may strike after it. Bounces between two contacts of a body that accumulate would end in a blow of both, too early.
+    fn leave_out_what_parts(
+        &mut self,
+        model: &Model<D>,
+        from: &State,
+        work: &mut Workspace<D>,
+    ) -> Result<(), Mismatch> {
+        let (mut candidates, mut kept) = (std::mem::take(&mut work.candidates), 0);
+        for k in 0..candidates.len() {
+            let candidate = candidates[k];
+            let parts = self.step.closed.binary_search(&candidate.id).is_err()
+                && !self.is_with_elastic(model, &candidate.sides.map(|side| side.body))
+                && {
+                    let rate = rate_at(&mut self.one, model, &from.q, &candidate, &from.v)?;
+                    leaves(rate, || self.one.speed(0, &from.v))
+                };
+            if !parts {
+                candidates[kept] = candidate;
+                kept += 1;
+            }
+        }
+        candidates.truncate(kept);
+        work.candidates = candidates;
+        Ok(())
     }
 
     /// Finds the contacts that strike, if any closed contact has drifted from its surface, so that others may seem to come later.

@@ -384,29 +384,6 @@ fn a_corner_that_strikes_just_before_the_edge_of_a_table_is_not_missed() {
     }
 }
 
-/// A pentagon strikes two discs that lie on the ground, and these each other: each of the blows parts a contact that
-/// was inside its surface for a part of the step only.
-#[test]
-fn a_touch_that_is_over_by_the_end_of_a_step_is_found() {
-    let scene = "[world]\ngravity = '0 m/s^2'\n[time]\nend = '0.16 s'\nstep = '1 ms'\n[ground]\n\
-         [contact.c]\nbetween = ['*', '*']\nfriction = 0.0\nrestitution = 0.015\n\
-         [block.b1]\ndensity = '764.7 kg/m^3'\ndepth = '0.1 m'\nradius = '0.04534 m'\n\
-         position = ['-0.11158 m', '0.28201 m']\nangle = '22.980 deg'\nvelocity = ['0.77106 m/s', '-1.76776 m/s']\n\
-         [block.b2]\ndensity = '1040.1 kg/m^3'\ndepth = '0.1 m'\n\
-         shape = { kind = 'regular', sides = 5, radius = '0.07699 m' }\n\
-         position = ['0.03565 m', '0.36317 m']\nangle = '85.433 deg'\nvelocity = ['0.12420 m/s', '-1.77305 m/s']\n\
-         [block.b3]\ndensity = '705.8 kg/m^3'\ndepth = '0.1 m'\nradius = '0.03952 m'\n\
-         position = ['0.12635 m', '0.17824 m']\nangle = '-39.495 deg'\nvelocity = ['-1.46191 m/s', '-1.00046 m/s']\n\
-         spin = '-2.0290 rad/s'\n";
-    let short = run(scene, "20 us").0.state;
-    for step in ["0.5 ms", "1 ms"] {
-        let state = run(scene, step).0.state;
-        for (v, other) in state.v.iter().zip(&short.v) {
-            assert!((v - other).abs() < 1e-8, "{step}: {:?} and {:?}", state.v, short.v);
-        }
-    }
-}
-
 /// A rocking block of this shape.
 fn rocking_shape(shape: &str) -> String {
     format!(

@@ -2,6 +2,7 @@
 //! motions they give.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
 
+mod accumulating;
 mod allocations;
 mod around_ends;
 mod beams;
