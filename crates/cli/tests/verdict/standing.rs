@@ -60,9 +60,18 @@ fn what_stands_on_a_beam_that_rings_does_not_rock_on() {
         let (t, phi) = (ran.column("t"), ran.column("b.phi"));
         let [left, right] = ["deck.w@0.32", "deck.w@0.38"].map(|name| ran.column(name));
         let alpha = 0.5_f64.atan();
-        let lifted = (0..t.len()).rfind(|k| (phi[*k] - (right[*k] - left[*k]).atan2(0.06)).abs() > 0.01 * alpha);
+        let angle = |k: usize| phi[k] - (right[k] - left[k]).atan2(0.06);
+        let lifted = (0..t.len()).rfind(|k| angle(*k).abs() > 0.01 * alpha);
         let stands_from = t[lifted.unwrap()];
         assert!((0.2..0.9).contains(&stands_from), "{stands_from}");
+        // Small swings to both sides are turns by a hundredth of α, though no angle is as large any more.
+        let (mut low, mut high, mut turned) = (angle(0), angle(0), 0.0);
+        for (k, t) in t.iter().enumerate() {
+            (low, high) = (low.min(angle(k)), high.max(angle(k)));
+            if high - low >= 0.01 * alpha {
+                (low, high, turned) = (angle(k), angle(k), *t);
+            }
+        }
         let headline = ran.summary["headline"].as_str().unwrap();
         let at = headline.split_once("at t = ").map_or("", |(_, rest)| rest);
         let told: f64 = at.split(' ').next().and_then(|number| number.parse().ok()).unwrap_or(0.0);
@@ -71,8 +80,8 @@ fn what_stands_on_a_beam_that_rings_does_not_rock_on() {
             "{end}: {headline}"
         );
         assert!(
-            headline.starts_with("`b` came") || (1e-3 * told - stands_from).abs() < 0.05,
-            "{stands_from}: {headline}"
+            headline.starts_with("`b` came") || (stands_from - 0.01..turned + 0.01).contains(&(1e-3 * told)),
+            "{stands_from} to {turned}: {headline}"
         );
         assert!(ran.verdict("b")["last_peak"].is_null(), "{headline}");
     }
