@@ -88,7 +88,8 @@ pub struct BodyVerdict {
     pub(crate) slid_to: Option<&'static str>,
     #[serde(skip)]
     pub(crate) farthest_to: Option<&'static str>,
-    /// The farthest to the left and to the right that it slid, m, of one that slid to one side, back, and on again.
+    /// The farthest to the left and to the right of its start that it was, m, of one that slid to one side, back, and on again: by its slides alone
+    /// where hops and flights took it elsewhere.
     #[serde(skip)]
     pub(crate) to_and_fro: Option<[f64; 2]>,
     /// Whether what is below it moves on as prescribed.

@@ -97,6 +97,10 @@ impl Seen {
         let turned = self.angle - self.start[2];
         // Where pieces of a profile meet, a base goes a little less far than its feet. What comes down turns over as it does.
         let apart = if watched.carrier.is_terrain() || began_in_flight { watched.base() } else { least };
+        let elsewhere = if began_in_flight { flown } else { displaced }
+            .filter(|at| slides.is_some_and(|slides| (at - slides.at()).abs() >= apart));
+        // Hops, which its slides leave out, may have taken it there and back.
+        let stays_near = !began_in_flight && displaced.is_some() && elsewhere.is_none();
         // Which turn it made before and which after isn't told.
         let turns_as_it_falls = matches!(what, Fate::Overturned | Fate::Left);
         let is_free = matches!(block.placement, Placement::Free { .. });
@@ -181,8 +185,7 @@ impl Seen {
             farthest_to: None,
             displaced,
             has_slid,
-            elsewhere: if began_in_flight { flown } else { displaced }
-                .filter(|at| slides.is_some_and(|slides| (at - slides.at()).abs() >= apart)),
+            elsewhere,
             flown: flown.filter(|at| at.abs() >= if began_in_flight { watched.base() } else { least }),
             began_in_flight,
             rolled: before.as_ref().unwrap_or(&self.rolling).told(
@@ -194,7 +197,7 @@ impl Seen {
             goes_below: before
                 .filter(|_| rests.is_none() && self.goes_along(watched, state.t))
                 .map(|_| if self.rolling.rolls { Going::Rolls } else { Going::Slides }),
-            to_and_fro: to_and_fro.map(|slides| slides.reached()),
+            to_and_fro: to_and_fro.map(|slides| if stays_near { self.been } else { slides.reached() }),
             is_driven: state.t < watched.driven_until,
             stopped,
             speed: (what == Fate::Slid && rests.is_none() && self.still.is_none() && !stopped).then(|| {
