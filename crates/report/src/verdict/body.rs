@@ -112,6 +112,9 @@ pub struct BodyVerdict {
     /// Since when it is still, of one that is so at the end, but not for long enough to rest, s.
     #[serde(skip)]
     pub(crate) still_from: Option<f64>,
+    /// Of one that rocked lately: whether it stands on its side by then, and is still.
+    #[serde(skip)]
+    pub(crate) stopped_swinging: bool,
     /// When the run began, s: 0, but for one from the state of another.
     #[serde(skip)]
     pub(crate) start: f64,

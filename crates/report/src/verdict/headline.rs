@@ -293,6 +293,9 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             let peak =
                 of.last_peak.map_or_else(String::new, |peak| format!(", last peak {}{against}{at}", angle(peak)));
             let drift = if of.has_slid { format!(", {slid}") } else { String::new() };
+            if of.stopped_swinging {
+                return beside(format!("rocked{aside}{peak}{drift}{}", still(scene, of, end)));
+            }
             beside(format!("rocks on{aside}{peak}{drift}"))
         }
         Fate::Moves if of.still_from == Some(of.start) && scene.settles_at() < end => {

@@ -7,6 +7,9 @@ use teeter_integrator::{RockingMonitor, State};
 use teeter_scenario::scene::{BlockScene, Placement};
 use teeter_scenario::simulation::Layout;
 
+/// What is tilted by no more than this part of its last peak has come down from it.
+const DOWN: f64 = 0.1;
+
 impl Seen {
     pub(super) fn verdict(
         &self,
@@ -127,6 +130,12 @@ impl Seen {
         let going = going.or((moves && stands_on_both && rocked).then_some(Going::Vibrates));
         let for_an_instant = self.still.is_some_and(|since| state.t - since < watched.still_time);
         let q = &state.q[layout.blocks[number].range.clone()];
+        // What swings is still at its peaks only.
+        let has_sat_down = |since: f64| {
+            let peak = peak.filter(|peak| peak.t < since);
+            peak.is_some_and(|peak| watched.turned(layout, number, state).abs() < DOWN * peak.phi.abs())
+        };
+        let stopped_swinging = what == Fate::Rocks && self.still.is_some_and(has_sat_down);
         // What swings stands still twice a period.
         let carrier_moves = || self.carried.is_some_and(lately);
         // Where what carries it is shaken, it may slide on.
@@ -208,6 +217,7 @@ impl Seen {
             last_peak: peak.filter(|_| what == Fate::Rocks).map(|peak| peak.phi),
             against: watched.against(layout, number, &state.q),
             still_from: self.still.filter(|_| rests.is_none() && !stopped),
+            stopped_swinging,
             stands_from: since,
             turned: (turns_as_it_falls && !watched.is_round && turned.abs() >= TUMBLED).then_some(turned.abs()),
             is_carried: rests.is_some() && {

@@ -148,7 +148,8 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
         .filter(|of| of.what == Fate::Rocks || of.tips.is_some())
         .partition(|of| of.tips.is_some());
     // Blocks that turn as one rock together, on the base of the lowest.
-    let rocking: Vec<_> = rocking.into_iter().filter(|of| !in_group(of)).collect();
+    let rocking = rocking.into_iter().filter(|of| !in_group(of));
+    let (sat_down, rocking): (Vec<_>, Vec<_>) = rocking.partition(|of| of.stopped_swinging);
     let (unheld, tipping): (Vec<_>, Vec<_>) = tipping.into_iter().partition(|of| of.past_edge.is_some());
     if let [one] = unheld[..] {
         tell(&[one], &format!("is still tipping{PAST_EDGE}"), "");
@@ -202,7 +203,7 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
     let of_moves: Vec<_> =
         of(&[Fate::Moves]).into_iter().filter(|of| of.going.is_none() && of.tips.is_none()).collect();
     let (at_end, moving): (Vec<_>, Vec<_>) = of_moves.into_iter().partition(|of| of.still_from.is_some());
-    let still: Vec<_> = still.into_iter().chain(at_end).collect();
+    let still: Vec<_> = still.into_iter().chain(at_end).chain(sat_down).collect();
     let stand = if still.len() == 1 { "stands" } else { "stand" };
     tell(&still, &format!("{stand} still at the end{}", how_they_lie(&still)), "");
     tell(&moving, if moving.len() == 1 { "still moves" } else { "still move" }, "");

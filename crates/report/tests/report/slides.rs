@@ -36,3 +36,25 @@ fn what_slid_to_and_fro_is_told_where_it_was() {
         assert!((found - was).abs() < 1e-4, "{found} {was}: {headline}");
     }
 }
+
+/// It has sat down 12 ms before the end, which is too short a time to rest.
+#[test]
+fn what_has_sat_down_does_not_rock_on() {
+    let text = "[time]\nend = '2 s'\nstep = '100 us'\n[ground]\n[block.runner]\ndensity = '2400 kg/m^3'\nwidth = '20 cm'\n\
+        height = '20 cm'\ndepth = '20 cm'\non = 'ground'\nat = '-1 m'\nvelocity = ['3 m/s', '0 m/s']\n[block.target]\n\
+        density = '2400 kg/m^3'\nwidth = '20 cm'\nheight = '50 cm'\ndepth = '20 cm'\non = 'ground'\nat = '0 m'\n[contact.g]\n\
+        between = ['*', 'ground']\nfriction = 0.3\n[contact.b]\nbetween = ['runner', 'target']\nfriction = 0.2\nrestitution = 0.3\n";
+    let ran = run("sat-down", text);
+    let rows = table(&ran.folder.join("trajectory.csv"));
+    let (t, omega) = (column(&rows, "t"), column(&rows, "target.omega"));
+    let moved = t.iter().zip(omega).filter(|(_, omega)| omega.abs() > 0.01).map(|(t, _)| *t).fold(0.0, f64::max);
+    let target = ran.summary.headline.split_once("; `target` rocked, last peak ").unwrap().1;
+    let since: f64 = target.split_once(" and has been still since t = ").unwrap().1.split_once(" s,").unwrap().0.parse().unwrap();
+    assert!(since >= moved && since < 2.0, "{since} {moved}: {target}");
+    // At a peak it is slow, too, but rocks on; among three blocks, too.
+    let swings = run("still-swings", &text.replace("end = '2 s'", "end = '1.5 s'")).summary.headline;
+    assert!(swings.contains("; `target` rocks on, last peak "), "{swings}");
+    let third = "[block.third]\ndensity = '2400 kg/m^3'\nwidth = '20 cm'\nheight = '20 cm'\ndepth = '20 cm'\non = 'ground'\nat = '3 m'\n";
+    let three = run("sat-down-of-three", &format!("{text}{third}")).summary.headline;
+    assert!(three.contains("`target` stands still at the end") && !three.contains("rocks on"), "{three}");
+}
