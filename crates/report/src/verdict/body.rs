@@ -209,7 +209,7 @@ impl BodyVerdict {
         }
     }
 
-    /// When it settled, s, of one that began in flight.
+    /// From when on it couldn't turn over any more, s, of one that began in flight and settled: it may bounce on for a while.
     pub(crate) fn settled_at(&self) -> Option<f64> {
         self.stands_from.filter(|t| *t > self.start)
     }

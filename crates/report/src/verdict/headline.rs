@@ -180,7 +180,7 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     let largest = of.share().filter(|part| *part >= super::ROCKED);
     let of_all = if of.column.is_some() { " of the column" } else { "" };
     // It may have flown at a larger angle.
-    let since = if of.settled_at().is_some() { " since it settled" } else { "" };
+    let since = if of.settled_at().is_some() { " since it could no longer turn over" } else { "" };
     let largest = largest.map_or_else(String::new, |part| format!("largest φ/α{of_all}{since} {}", self::part(part)));
     let slid = slid(scene, of);
     // Angles count from what carries it, in plots from the horizontal.

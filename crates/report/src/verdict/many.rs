@@ -229,7 +229,7 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
             false => "all",
         };
         // What fell there may have flown at a larger angle, as the sentence on a single block says.
-        let since = if of.settled_at().is_some() { ", since it settled" } else { "" };
+        let since = if of.settled_at().is_some() { ", since it could no longer turn over" } else { "" };
         let of = if whose == "the column" { String::new() } else { format!(" (`{}`{since})", of.body) };
         text.push_str(&format!("; largest φ/α of {whose} {}{of}", part(largest)));
     }
