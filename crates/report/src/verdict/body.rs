@@ -115,6 +115,9 @@ pub struct BodyVerdict {
     /// Of one that rocked lately: whether it stands on its side by then, and is still.
     #[serde(skip)]
     pub(crate) stopped_swinging: bool,
+    /// Whether it ever came down from a flight.
+    #[serde(skip)]
+    pub(crate) has_landed: bool,
     /// When the run began, s: 0, but for one from the state of another.
     #[serde(skip)]
     pub(crate) start: f64,

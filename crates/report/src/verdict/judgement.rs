@@ -218,6 +218,7 @@ impl Seen {
             against: watched.against(layout, number, &state.q),
             still_from: self.still.filter(|_| rests.is_none() && !stopped),
             stopped_swinging,
+            has_landed: self.touched.has_landed(),
             stands_from: since,
             turned: (turns_as_it_falls && !watched.is_round && turned.abs() >= TUMBLED).then_some(turned.abs()),
             is_carried: rests.is_some() && {

@@ -169,6 +169,8 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
         let lie = how_they_lie(&these);
         let what = match these[..] {
             [one] => format!("is {}{lie}{}", going.word(), so_far_in_words(scene, one)),
+            // Between flights it may have rolled far to one side and back: the sum of that says nothing beside others.
+            _ if these.iter().any(|of| of.has_landed) => format!("are {}{lie}", going.word_of_many()),
             _ => format!("are {}{lie}{}", going.word_of_many(), farthest(&these, way_so_far)),
         };
         tell(&these, &what, "");
