@@ -3,7 +3,7 @@
 use super::headline::{
     self, PAST_EDGE, moving_base, on_what_moves, part, slid, so_far_in_words, time, up_to, way_so_far,
 };
-use super::{BodyVerdict, Fate, Going};
+use super::{BodyVerdict, Fate, Going, Way};
 use teeter_scenario::readable::with_unit;
 use teeter_scenario::scene::Scene;
 
@@ -15,6 +15,19 @@ fn how_they_lie(blocks: &[&BodyVerdict]) -> String {
         [(slid, "after sliding"), (over, "on another side than the base")].into_iter().filter(|(count, _)| *count > 0);
     let told: Vec<String> = told.map(|(count, how)| format!("{count} {how}")).collect();
     if told.is_empty() { String::new() } else { format!(" ({})", told.join(", ")) }
+}
+
+/// How many of these went to the left and how many to the right, in brackets; nothing where all went to one side.
+fn both_ways(blocks: &[&BodyVerdict]) -> String {
+    let count = |way: Way| blocks.iter().filter(|of| of.way == Some(way)).count();
+    match [count(Way::Left), count(Way::Right)] {
+        [0, _] | [_, 0] => String::new(),
+        // One that is thrown to the other side of its start turned over to the left, but isn't there.
+        [left, right] if blocks.iter().any(|of| of.aside.is_some()) => {
+            format!(" ({left} counter-clockwise, {right} clockwise)")
+        }
+        [left, right] => format!(" ({left} to the left, {right} to the right)"),
+    }
 }
 
 /// How far these went at most, each by its own way (m), in words with the one that went farthest; nothing of what hardly did.
@@ -69,7 +82,8 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
             return;
         }
         let which = if first.is_empty() { String::new() } else { format!(", {first} `{}`{way}{when}", earliest.body) };
-        parts.push(format!("{count}{of_all}{blocks} {what}{which}"));
+        let ways = if first.is_empty() { String::new() } else { both_ways(found) };
+        parts.push(format!("{count}{of_all}{blocks} {what}{ways}{which}"));
     };
     let fell = of(&[Fate::Fell]);
     let collapsed = !fell.is_empty() && of(&[Fate::Fell, Fate::Overturned]).len() > 1;

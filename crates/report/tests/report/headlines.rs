@@ -481,7 +481,7 @@ fn first_is_said_of_several_only() {
     assert!(headline.starts_with(told) && headline.ends_with("; 2 stood still throughout"), "{headline}");
     assert!(one.html.contains("<dt>Overturned at (b1)</dt>"));
     let two = run("two-of-three", &text([0.0, 13.0, -13.0]));
-    assert!(two.summary.headline.starts_with("2 of 3 blocks overturned, first `b1`"), "{}", two.summary.headline);
+    assert!(two.summary.headline.starts_with("2 of 3 blocks overturned (1 to the left, 1 to the right), first `b1` to the left"), "{}", two.summary.headline);
     assert!(two.html.contains("<dt>First overturned at</dt>"));
 }
 
