@@ -144,7 +144,8 @@ fn a_ground_that_starts_to_move_at_once_jolts_what_stands_on_it() {
         assert!(output.status.success(), "{stderr}");
         stderr.contains(warning)
     };
-    let bin = "profile = { points = [['-60 cm', '40 cm'], ['-50 cm', '0 cm'], ['50 cm', '0 cm'], ['60 cm', '40 cm']] }\n";
+    let bin =
+        "profile = { points = [['-60 cm', '40 cm'], ['-50 cm', '0 cm'], ['50 cm', '0 cm'], ['60 cm', '40 cm']] }\n";
     let box_ = "width = '10 cm'\nheight = '20 cm'\n";
     for (name, profile, block, is_jolted) in [
         ("dropped-ball", bin, "radius = '4 cm'\nposition = ['-30 cm', '40 cm']".to_owned(), false),

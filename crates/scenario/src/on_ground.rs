@@ -15,9 +15,11 @@ pub(crate) fn is_on_ground(scene: &Scene, block: &BlockScene) -> bool {
     let Some(ground) = &scene.ground else { return false };
     let turned = |angle: f64, point: Vector2<f64>| Rotation2::new(angle) * point;
     // As the ground sees it, from which a profile counts.
-    let corners = block.corners().into_iter().enumerate().map(|(number, corner)| {
-        (turned(-ground.incline, at + turned(angle, corner)), block.corner_radius(number))
-    });
+    let corners = block
+        .corners()
+        .into_iter()
+        .enumerate()
+        .map(|(number, corner)| (turned(-ground.incline, at + turned(angle, corner)), block.corner_radius(number)));
     let least = TOUCHES * block.radius();
     let profile: Option<Vec<Vector2<f64>>> = ground.profile.as_deref().map(|profile| profile.points().collect());
     corners.into_iter().any(|(corner, radius)| match &profile {

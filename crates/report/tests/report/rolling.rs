@@ -72,7 +72,8 @@ fn what_goes_on_among_many_is_told_how_far() {
     let two = headline("two-slide", &scene(-0.6, 0.0, 0.4));
     assert!(two.ends_with("; 2 are still sliding, by up to 300 mm (`b`)"), "{two}");
     // One that hops first has gone by more than it rolled.
-    let hops = scene(-0.6, 0.3, 0.4).replace("at = '1 m'\nvelocity = ['-0.6 m/s', '0 m/s']", "at = '1 m'\nvelocity = ['-0.6 m/s', '1 m/s']");
+    let hops = scene(-0.6, 0.3, 0.4)
+        .replace("at = '1 m'\nvelocity = ['-0.6 m/s', '0 m/s']", "at = '1 m'\nvelocity = ['-0.6 m/s', '1 m/s']");
     let two = headline("one-of-two-hopped", &hops);
     assert!(two.ends_with("; 2 are still rolling"), "{two}");
     let two = headline("two-roll", &scene(-0.6, 0.3, 0.4));

@@ -31,7 +31,9 @@ fn what_slid_to_and_fro_is_told_where_it_was() {
     let headline = &ran.summary.headline;
     let told_of_crate = headline.split_once("`crate` slid to and fro, up to ").unwrap().1;
     // It tilts by some 1e-4 rad on the beam that bends, which moves its mass centre by as much of 15 cm.
-    for (told, was) in [(" mm left of and", left), (" mm right of its start", right), (" mm left of it", -at[at.len() - 1])] {
+    for (told, was) in
+        [(" mm left of and", left), (" mm right of its start", right), (" mm left of it", -at[at.len() - 1])]
+    {
         let found = before(&format!(" {told_of_crate}"), told);
         assert!((found - was).abs() < 1e-4, "{found} {was}: {headline}");
     }
@@ -49,7 +51,8 @@ fn what_has_sat_down_does_not_rock_on() {
     let (t, omega) = (column(&rows, "t"), column(&rows, "target.omega"));
     let moved = t.iter().zip(omega).filter(|(_, omega)| omega.abs() > 0.01).map(|(t, _)| *t).fold(0.0, f64::max);
     let target = ran.summary.headline.split_once("; `target` rocked, last peak ").unwrap().1;
-    let since: f64 = target.split_once(" and has been still since t = ").unwrap().1.split_once(" s,").unwrap().0.parse().unwrap();
+    let since: f64 =
+        target.split_once(" and has been still since t = ").unwrap().1.split_once(" s,").unwrap().0.parse().unwrap();
     assert!(since >= moved && since < 2.0, "{since} {moved}: {target}");
     // At a peak it is slow, too, but rocks on; among three blocks, too.
     let swings = run("still-swings", &text.replace("end = '2 s'", "end = '1.5 s'")).summary.headline;

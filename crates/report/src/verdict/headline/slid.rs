@@ -15,7 +15,9 @@ pub(in crate::verdict) fn slid(scene: &Scene, of: &BodyVerdict) -> String {
         _ if both_sides.is_some() => to_both_sides(scene, of, both_sides.unwrap_or_default(), slid),
         None => format!("slid by {}", by(slid)),
         Some(farthest) if of.elsewhere.is_some() => format!("slid {}, then {}", by(farthest), by(slid - farthest)),
-        Some(farthest) if is_back(scene, of, slid, farthest) => format!("slid {}, then back to its start", by(farthest)),
+        Some(farthest) if is_back(scene, of, slid, farthest) => {
+            format!("slid {}, then back to its start", by(farthest))
+        }
         Some(farthest) => {
             let side = direction(scene, slid).side;
             // What ends on the other side, farther from its start than it was before, isn't back there.
