@@ -342,7 +342,7 @@ fn format_summary(summary: &Summary, folder: &Path, horizon: bool, report: bool)
         ));
     }
     if summary.contact.unconverged_steps > 0 {
-        text.push_str(&format!("  {} steps not solved to tolerance\n", summary.contact.unconverged_steps));
+        text.push_str(&format!("  {} not solved to tolerance\n", count(summary.contact.unconverged_steps, "step")));
     }
     // If it is earlier, there was a warning.
     if horizon && summary.warnings.iter().all(|warning| warning.code != HORIZON) {

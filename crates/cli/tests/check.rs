@@ -128,6 +128,36 @@ fn what_a_beam_rests_on_is_told_once_and_counted_beyond_twenty() {
     assert!(many.contains("    with pinned at 205 mm\n    and 3 more\n") && !many.contains("at 215 mm"), "{many}");
 }
 
+/// What is still in the air when the ground starts to move is left alone by it.
+#[test]
+fn a_ground_that_starts_to_move_at_once_jolts_what_stands_on_it() {
+    let warning = "the ground starts with 377 mm/s, but `b` on it starts at rest";
+    let told = |name: &str, profile: &str, block: &str| {
+        let text = format!(
+            "[time]\nend = '1 s'\nstep = '200 us'\n[ground]\n{profile}motion = {{ displacement = ['15 mm', '0 m'], signal = 's' }}\n\
+             [signal.s]\nshape = 'harmonic'\nfrequency = '4 Hz'\n[block.b]\ndensity = '1000 kg/m^3'\ndepth = '10 cm'\n{block}\n\
+             [contact.a]\nbetween = ['b', 'ground']\nfriction = 0.3\n"
+        );
+        let scene = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("jolt-{name}.toml"));
+        std::fs::write(&scene, text).unwrap();
+        let (output, _, stderr) = check(&[scene.to_str().unwrap()]);
+        assert!(output.status.success(), "{stderr}");
+        stderr.contains(warning)
+    };
+    let bin =
+        "profile = { points = [['-60 cm', '40 cm'], ['-50 cm', '0 cm'], ['50 cm', '0 cm'], ['60 cm', '40 cm']] }\n";
+    let box_ = "width = '10 cm'\nheight = '20 cm'\n";
+    for (name, profile, block, is_jolted) in [
+        ("dropped-ball", bin, "radius = '4 cm'\nposition = ['-30 cm', '40 cm']".to_owned(), false),
+        ("lying-ball", bin, "radius = '4 cm'\nposition = ['-30 cm', '4 cm']".to_owned(), true),
+        ("standing-box", "", format!("{box_}on = 'ground'\nat = '0 m'"), true),
+        ("dropped-box", "", format!("{box_}position = ['0 m', '11 cm']"), false),
+        ("placed-box", "", format!("{box_}position = ['0 m', '10 cm']"), true),
+    ] {
+        assert_eq!(told(name, profile, &block), is_jolted, "{name}");
+    }
+}
+
 #[test]
 fn an_unusual_gap_tolerance_is_told() {
     let (_, stdout, _) = check(&[&scenario("free-rocking-on-ground"), "--set", "block.rocker.height=2 m"]);

@@ -226,6 +226,9 @@ fn an_unsolved_step_is_warned_of_and_with_require_convergence_ends_the_run() {
     let warning = &summary(&folder)["warnings"][0];
     assert_eq!((warning["code"].as_str(), warning["count"].as_u64()), (Some("unconverged"), Some(unconverged)));
 
+    let single = run(&folder, "sliding", &[&hard[..], &["--force", "--set", "time.end=1 ms"]].concat());
+    assert!(stderr(&single).contains("  1 step not solved to tolerance\n"), "{}", stderr(&single));
+
     let strict = [&hard[..], &["--force", "--set", "solver.require_convergence=true"]].concat();
     let output = run(&folder, "sliding", &strict);
     assert_eq!(output.status.code(), Some(1));
@@ -242,6 +245,19 @@ fn an_unsolved_step_is_warned_of_and_with_require_convergence_ends_the_run() {
     let (_, contacts) = table(&folder.join("out/contacts.csv"));
     let t = summary["t"].as_f64().unwrap().to_string();
     assert_eq!((&rows.last().unwrap()[0], &contacts.last().unwrap()[0]), (&t, &t));
+}
+
+/// As in the list below it.
+#[test]
+fn names_in_the_heading_of_warnings_are_code() {
+    let folder = folder("warned-of-a-jolt");
+    let motion = "ground.motion={ displacement = ['15 mm', '0 m'], signal = 's' }";
+    let signal = "signal.s={ shape = 'harmonic', frequency = '4 Hz' }";
+    let output = run(&folder, "free-rocking-on-ground", &["--set", "time.end=10 ms", "--set", motion, "--set", signal]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let page = std::fs::read_to_string(folder.join("out/report.html")).unwrap();
+    let heading = page.split_once("<summary><b>Warning</b>: ").unwrap().1.split_once("</summary>").unwrap().0;
+    assert!(heading.contains("but <code>rocker</code> on it starts at rest") && !heading.contains('`'), "{heading}");
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use crate::Summary;
 use teeter_scenario::scene::{BlockScene, Scene};
 
-/// A penetration below this part of the largest block is rounding of positions.
-const ROUNDING: f64 = 1e-14;
+/// A penetration below this part of the largest block is rounding, of positions and of what holds a pile: of a block of a metre less than an atom.
+const ROUNDING: f64 = 1e-10;
 
 /// Warnings that steps are too long for the motion to be relied on, beside all that begin with `under-resolved`.
 const TOO_COARSE: [&str; 2] = ["deep-penetration", "far-turn"];

@@ -152,6 +152,8 @@ struct Seen {
     stood: Option<f64>,
     /// Where its mass centre was along what carries it at the start of the run, m.
     released: f64,
+    /// The farthest to the left and to the right of there that it has been, by slides and hops, m.
+    been: [f64; 2],
     /// How it has slid, from the start of the run.
     slides: Slides,
     /// How far it had slid, and in all, m, when it passed the point of no return that it is past, or its column did.
@@ -351,6 +353,10 @@ impl Fates {
                 }
             }
             (seen.turn, seen.angle) = (q[2] - seen.angle, q[2]);
+            if let Some(stood) = seen.stood.filter(|_| seen.beyond.is_none()) {
+                let at = watched.place(layout, number, state).map_or(0.0, |at| at - stood);
+                seen.been = [seen.been[0].min(at), seen.been[1].max(at)];
+            }
             let [left, right] = &mut seen.turned;
             (*left, *right) = (left.max(seen.tilt.rocking()), right.max(-seen.tilt.rocking()));
             if let Some(height) = seen.height {

@@ -49,6 +49,7 @@ mod mass_ratio;
 mod meeting;
 pub mod mesh_error;
 pub mod number_table;
+mod on_ground;
 mod opening;
 pub mod output_size;
 mod overlap;

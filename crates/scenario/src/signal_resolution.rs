@@ -3,6 +3,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Document;
+use crate::on_ground::is_on_ground;
 use crate::record_checks;
 use crate::scene::{AxisScene, ContactScene, History, MotionScene, Scene, SignalScene, SupportingBody};
 use crate::wording::seconds;
@@ -459,7 +460,8 @@ fn fast_starts(scene: &Scene, document: &Document) -> Vec<Diagnostic> {
     });
     let at_rest = |contact: &ContactScene| {
         let block = &scene.blocks[contact.block];
-        (contact.surface == SupportingBody::Ground && block.velocity == [0.0; 2]).then_some(block)
+        (contact.surface == SupportingBody::Ground && block.velocity == [0.0; 2] && is_on_ground(scene, block))
+            .then_some(block)
     };
     let left_behind = scene.contacts.iter().find_map(at_rest);
     let ground = scene.ground.as_ref().zip(left_behind).and_then(|(ground, block)| {

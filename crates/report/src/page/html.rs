@@ -204,7 +204,7 @@ fn warnings(summary: &Summary) -> String {
     let mut html = format!(
         "<section id=\"warnings\" aria-labelledby=\"warnings-title\">\n<h2 class=\"unseen\" id=\"warnings-title\">Warnings</h2>\n\
          <details>\n<summary><b>{title}</b>: {}</summary>\n<ul>\n",
-        escaped(&subjects.join("; "))
+        with_code(&subjects.join("; "))
     );
     for warning in &summary.warnings {
         // Some texts tell how often.

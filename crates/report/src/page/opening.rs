@@ -20,7 +20,7 @@ const SMOOTH: usize = 60;
 /// The part of a run on which its plots open, s.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct Opening {
-    /// When anything moves for the first and for the last time.
+    /// When anything moves for the first and for the last time: from the start of the run on where that is shown.
     pub(crate) moves: [f64; 2],
     /// The same with some room about it.
     pub(crate) shown: [f64; 2],
@@ -51,6 +51,8 @@ pub(crate) fn opening(recorder: &PageRecorder, panels: &Panels) -> Option<Openin
     let seen = if pushed[1] - pushed[0] <= SMALL * run { pushed } else { moves };
     let room = ROOM * (moves[1] - moves[0]);
     let shown = [(seen[0] - room).max(*times.first()?), (seen[1] + room).min(*times.last()?)];
+    // What moves from the start on takes a while to be seen to.
+    let moves = if shown[0] <= *times.first()? { [*times.first()?, moves[1]] } else { moves };
     let parts = borders.windows(2).filter(|ends| ends[1] > shown[0] && ends[0] < shown[1]).count();
     if panels.curves.is_thinned() && parts < SMOOTH {
         return None;

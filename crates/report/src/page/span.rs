@@ -94,6 +94,9 @@ const PEAKS: usize = 2;
 const APART: f64 = 0.05;
 const TELLING: f64 = 0.3;
 
+/// The largest deflection to the other side is seen beside the largest one from this part of it on.
+const SEEN: f64 = 0.1;
+
 /// Most beams with a panel of their own.
 const BEAMS: usize = 4;
 
@@ -188,7 +191,7 @@ fn chosen(times: &[f64], peaks: &[f64], run: f64) -> Vec<(usize, &'static str)> 
     }
     let mut more = 0;
     // A beam that swings up as far as down has a shape of each.
-    let other_side = |k: &usize| peaks[*k] * peaks[most] < 0.0 && sizes[*k] > TELLING * sizes[most];
+    let other_side = |k: &usize| peaks[*k] * peaks[most] < 0.0 && sizes[*k] > SEEN * sizes[most];
     let others: Vec<usize> = (0..=last).filter(other_side).collect();
     let other_sizes: Vec<f64> = others.iter().map(|k| sizes[*k]).collect();
     if let Some(k) = first_of_largest(&other_sizes).map(|first| others[first])
@@ -237,5 +240,10 @@ mod tests {
         let swing: Vec<f64> = times.iter().map(|t| -(-t / 6.0).exp() * t.sin()).collect();
         let chosen = super::chosen(&times, &swing, 100.0);
         assert!(chosen.contains(&(1, "largest")) && chosen.contains(&(5, "largest upwards")), "{chosen:?}");
+        // A sagging cantilever is thrown up by an eighth of how far it goes down.
+        let sags: Vec<f64> = swing.iter().zip(&times).map(|(w, t)| if *t > 3.0 { 0.2 * w } else { *w }).collect();
+        let chosen = super::chosen(&times, &sags, 100.0);
+        let up = chosen.iter().find(|(_, word)| *word == "largest upwards").unwrap().0;
+        assert!(up == 5 && (0.1..0.15).contains(&(sags[up] / -sags[1])), "{chosen:?} {sags:?}");
     }
 }

@@ -88,7 +88,8 @@ pub struct BodyVerdict {
     pub(crate) slid_to: Option<&'static str>,
     #[serde(skip)]
     pub(crate) farthest_to: Option<&'static str>,
-    /// The farthest to the left and to the right that it slid, m, of one that slid to one side, back, and on again.
+    /// The farthest to the left and to the right of its start that it was, m, of one that slid to one side, back, and on again: by its slides alone
+    /// where hops and flights took it elsewhere.
     #[serde(skip)]
     pub(crate) to_and_fro: Option<[f64; 2]>,
     /// Whether what is below it moves on as prescribed.
@@ -111,6 +112,12 @@ pub struct BodyVerdict {
     /// Since when it is still, of one that is so at the end, but not for long enough to rest, s.
     #[serde(skip)]
     pub(crate) still_from: Option<f64>,
+    /// Of one that rocked lately: whether it stands on its side by then, and is still.
+    #[serde(skip)]
+    pub(crate) stopped_swinging: bool,
+    /// Whether it ever came down from a flight.
+    #[serde(skip)]
+    pub(crate) has_landed: bool,
     /// When the run began, s: 0, but for one from the state of another.
     #[serde(skip)]
     pub(crate) start: f64,
@@ -205,7 +212,7 @@ impl BodyVerdict {
         }
     }
 
-    /// When it settled, s, of one that began in flight.
+    /// From when on it couldn't turn over any more, s, of one that began in flight and settled: it may bounce on for a while.
     pub(crate) fn settled_at(&self) -> Option<f64> {
         self.stands_from.filter(|t| *t > self.start)
     }

@@ -199,6 +199,11 @@ impl Touched {
         self.last.is_some()
     }
 
+    /// Whether it ever came down from a flight.
+    pub(super) fn has_landed(&self) -> bool {
+        self.landed.is_some()
+    }
+
     /// Whether nothing has touched a block in the time before `t`, s, for longer than what rocks hops. Not at the start, before the first step.
     pub(super) fn flies(&self, t: f64, watched: &Watched) -> bool {
         self.last.map_or(self.was_free, |last| t - last >= FLIGHT * watched.still_time)

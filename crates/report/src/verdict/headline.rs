@@ -180,7 +180,7 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
     let largest = of.share().filter(|part| *part >= super::ROCKED);
     let of_all = if of.column.is_some() { " of the column" } else { "" };
     // It may have flown at a larger angle.
-    let since = if of.settled_at().is_some() { " since it settled" } else { "" };
+    let since = if of.settled_at().is_some() { " since it could no longer turn over" } else { "" };
     let largest = largest.map_or_else(String::new, |part| format!("largest φ/α{of_all}{since} {}", self::part(part)));
     let slid = slid(scene, of);
     // Angles count from what carries it, in plots from the horizontal.
@@ -293,6 +293,9 @@ pub(super) fn one(scene: &Scene, of: &BodyVerdict, end: f64) -> String {
             let peak =
                 of.last_peak.map_or_else(String::new, |peak| format!(", last peak {}{against}{at}", angle(peak)));
             let drift = if of.has_slid { format!(", {slid}") } else { String::new() };
+            if of.stopped_swinging {
+                return beside(format!("rocked{aside}{peak}{drift}{}", still(scene, of, end)));
+            }
             beside(format!("rocks on{aside}{peak}{drift}"))
         }
         Fate::Moves if of.still_from == Some(of.start) && scene.settles_at() < end => {

@@ -7,6 +7,9 @@ use teeter_integrator::{RockingMonitor, State};
 use teeter_scenario::scene::{BlockScene, Placement};
 use teeter_scenario::simulation::Layout;
 
+/// What is tilted by no more than this part of its last peak has come down from it.
+const DOWN: f64 = 0.1;
+
 impl Seen {
     pub(super) fn verdict(
         &self,
@@ -97,6 +100,10 @@ impl Seen {
         let turned = self.angle - self.start[2];
         // Where pieces of a profile meet, a base goes a little less far than its feet. What comes down turns over as it does.
         let apart = if watched.carrier.is_terrain() || began_in_flight { watched.base() } else { least };
+        let elsewhere = if began_in_flight { flown } else { displaced }
+            .filter(|at| slides.is_some_and(|slides| (at - slides.at()).abs() >= apart));
+        // Hops, which its slides leave out, may have taken it there and back.
+        let stays_near = !began_in_flight && displaced.is_some() && elsewhere.is_none();
         // Which turn it made before and which after isn't told.
         let turns_as_it_falls = matches!(what, Fate::Overturned | Fate::Left);
         let is_free = matches!(block.placement, Placement::Free { .. });
@@ -123,6 +130,12 @@ impl Seen {
         let going = going.or((moves && stands_on_both && rocked).then_some(Going::Vibrates));
         let for_an_instant = self.still.is_some_and(|since| state.t - since < watched.still_time);
         let q = &state.q[layout.blocks[number].range.clone()];
+        // What swings is still at its peaks only.
+        let has_sat_down = |since: f64| {
+            let peak = peak.filter(|peak| peak.t < since);
+            peak.is_some_and(|peak| watched.turned(layout, number, state).abs() < DOWN * peak.phi.abs())
+        };
+        let stopped_swinging = what == Fate::Rocks && self.still.is_some_and(has_sat_down);
         // What swings stands still twice a period.
         let carrier_moves = || self.carried.is_some_and(lately);
         // Where what carries it is shaken, it may slide on.
@@ -181,8 +194,7 @@ impl Seen {
             farthest_to: None,
             displaced,
             has_slid,
-            elsewhere: if began_in_flight { flown } else { displaced }
-                .filter(|at| slides.is_some_and(|slides| (at - slides.at()).abs() >= apart)),
+            elsewhere,
             flown: flown.filter(|at| at.abs() >= if began_in_flight { watched.base() } else { least }),
             began_in_flight,
             rolled: before.as_ref().unwrap_or(&self.rolling).told(
@@ -194,7 +206,7 @@ impl Seen {
             goes_below: before
                 .filter(|_| rests.is_none() && self.goes_along(watched, state.t))
                 .map(|_| if self.rolling.rolls { Going::Rolls } else { Going::Slides }),
-            to_and_fro: to_and_fro.map(|slides| slides.reached()),
+            to_and_fro: to_and_fro.map(|slides| if stays_near { self.been } else { slides.reached() }),
             is_driven: state.t < watched.driven_until,
             stopped,
             speed: (what == Fate::Slid && rests.is_none() && self.still.is_none() && !stopped).then(|| {
@@ -205,6 +217,8 @@ impl Seen {
             last_peak: peak.filter(|_| what == Fate::Rocks).map(|peak| peak.phi),
             against: watched.against(layout, number, &state.q),
             still_from: self.still.filter(|_| rests.is_none() && !stopped),
+            stopped_swinging,
+            has_landed: self.touched.has_landed(),
             stands_from: since,
             turned: (turns_as_it_falls && !watched.is_round && turned.abs() >= TUMBLED).then_some(turned.abs()),
             is_carried: rests.is_some() && {

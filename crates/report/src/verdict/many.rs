@@ -3,7 +3,7 @@
 use super::headline::{
     self, PAST_EDGE, moving_base, on_what_moves, part, slid, so_far_in_words, time, up_to, way_so_far,
 };
-use super::{BodyVerdict, Fate, Going};
+use super::{BodyVerdict, Fate, Going, Way};
 use teeter_scenario::readable::with_unit;
 use teeter_scenario::scene::Scene;
 
@@ -15,6 +15,19 @@ fn how_they_lie(blocks: &[&BodyVerdict]) -> String {
         [(slid, "after sliding"), (over, "on another side than the base")].into_iter().filter(|(count, _)| *count > 0);
     let told: Vec<String> = told.map(|(count, how)| format!("{count} {how}")).collect();
     if told.is_empty() { String::new() } else { format!(" ({})", told.join(", ")) }
+}
+
+/// How many of these went to the left and how many to the right, in brackets; nothing where all went to one side.
+fn both_ways(blocks: &[&BodyVerdict]) -> String {
+    let count = |way: Way| blocks.iter().filter(|of| of.way == Some(way)).count();
+    match [count(Way::Left), count(Way::Right)] {
+        [0, _] | [_, 0] => String::new(),
+        // One that is thrown to the other side of its start turned over to the left, but isn't there.
+        [left, right] if blocks.iter().any(|of| of.aside.is_some()) => {
+            format!(" ({left} counter-clockwise, {right} clockwise)")
+        }
+        [left, right] => format!(" ({left} to the left, {right} to the right)"),
+    }
 }
 
 /// How far these went at most, each by its own way (m), in words with the one that went farthest; nothing of what hardly did.
@@ -69,7 +82,8 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
             return;
         }
         let which = if first.is_empty() { String::new() } else { format!(", {first} `{}`{way}{when}", earliest.body) };
-        parts.push(format!("{count}{of_all}{blocks} {what}{which}"));
+        let ways = if first.is_empty() { String::new() } else { both_ways(found) };
+        parts.push(format!("{count}{of_all}{blocks} {what}{ways}{which}"));
     };
     let fell = of(&[Fate::Fell]);
     let collapsed = !fell.is_empty() && of(&[Fate::Fell, Fate::Overturned]).len() > 1;
@@ -148,7 +162,8 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
         .filter(|of| of.what == Fate::Rocks || of.tips.is_some())
         .partition(|of| of.tips.is_some());
     // Blocks that turn as one rock together, on the base of the lowest.
-    let rocking: Vec<_> = rocking.into_iter().filter(|of| !in_group(of)).collect();
+    let rocking = rocking.into_iter().filter(|of| !in_group(of));
+    let (sat_down, rocking): (Vec<_>, Vec<_>) = rocking.partition(|of| of.stopped_swinging);
     let (unheld, tipping): (Vec<_>, Vec<_>) = tipping.into_iter().partition(|of| of.past_edge.is_some());
     if let [one] = unheld[..] {
         tell(&[one], &format!("is still tipping{PAST_EDGE}"), "");
@@ -168,6 +183,8 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
         let lie = how_they_lie(&these);
         let what = match these[..] {
             [one] => format!("is {}{lie}{}", going.word(), so_far_in_words(scene, one)),
+            // Between flights it may have rolled far to one side and back: the sum of that says nothing beside others.
+            _ if these.iter().any(|of| of.has_landed) => format!("are {}{lie}", going.word_of_many()),
             _ => format!("are {}{lie}{}", going.word_of_many(), farthest(&these, way_so_far)),
         };
         tell(&these, &what, "");
@@ -202,7 +219,7 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
     let of_moves: Vec<_> =
         of(&[Fate::Moves]).into_iter().filter(|of| of.going.is_none() && of.tips.is_none()).collect();
     let (at_end, moving): (Vec<_>, Vec<_>) = of_moves.into_iter().partition(|of| of.still_from.is_some());
-    let still: Vec<_> = still.into_iter().chain(at_end).collect();
+    let still: Vec<_> = still.into_iter().chain(at_end).chain(sat_down).collect();
     let stand = if still.len() == 1 { "stands" } else { "stand" };
     tell(&still, &format!("{stand} still at the end{}", how_they_lie(&still)), "");
     tell(&moving, if moving.len() == 1 { "still moves" } else { "still move" }, "");
@@ -228,7 +245,7 @@ pub(super) fn all(scene: &Scene, verdict: &[BodyVerdict], end: f64) -> String {
             false => "all",
         };
         // What fell there may have flown at a larger angle, as the sentence on a single block says.
-        let since = if of.settled_at().is_some() { ", since it settled" } else { "" };
+        let since = if of.settled_at().is_some() { ", since it could no longer turn over" } else { "" };
         let of = if whose == "the column" { String::new() } else { format!(" (`{}`{since})", of.body) };
         text.push_str(&format!("; largest φ/α of {whose} {}{of}", part(largest)));
     }

@@ -102,7 +102,11 @@ fn what_stands_in_the_state_that_a_run_begins_with_has_stood_from_its_start() {
     let (on, _) = run_from("went-on", &text("1 s"), Some(state));
     let headline = &on.summary.headline;
     assert!(headline.starts_with("`stands` stood still throughout; `rocks` rocks on, last peak "), "{headline}");
-    assert!(!headline.contains("since it settled") && !on.html.contains("since it settled"), "{headline}");
+    assert!(
+        !headline.contains("since it could no longer turn over")
+            && !on.html.contains("since it could no longer turn over"),
+        "{headline}"
+    );
     assert_eq!(on.summary.verdict[0].rests_from, Some(0.5));
     assert!(on.summary.verdict[0].displaced.is_some());
 }
@@ -447,8 +451,12 @@ fn the_largest_angle_of_what_flew_counts_since_it_settled() {
         height = '12 cm'\ndepth = '12 cm'\nposition = ['0 m', '60 cm']\nangle = '25 deg'\n[contact.c]\nbetween = ['brick', 'ground']\n\
         friction = 0.4\nrestitution = 0.3\n";
     let ran = run("dropped-tilted", text);
-    assert!(ran.summary.headline.contains(" (largest φ/α since it settled 0.1"), "{}", ran.summary.headline);
-    assert!(ran.html.contains("<dt>Largest φ/α since it settled at t = "));
+    assert!(
+        ran.summary.headline.contains(" (largest φ/α since it could no longer turn over 0.1"),
+        "{}",
+        ran.summary.headline
+    );
+    assert!(ran.html.contains("<dt>Largest φ/α since it could no longer turn over, from t = "));
     // Among more than two, too.
     let others = ["left", "right"].map(|name| {
         let at = if name == "left" { "-1 m" } else { "1 m" };
@@ -458,7 +466,10 @@ fn the_largest_angle_of_what_flew_counts_since_it_settled() {
         )
     });
     let three = run("dropped-beside", &format!("{text}{}", others.concat())).summary.headline;
-    assert!(three.contains("; largest φ/α of all 0.1") && three.ends_with(" (`brick`, since it settled)"), "{three}");
+    assert!(
+        three.contains("; largest φ/α of all 0.1") && three.ends_with(" (`brick`, since it could no longer turn over)"),
+        "{three}"
+    );
 }
 
 #[test]
@@ -481,7 +492,13 @@ fn first_is_said_of_several_only() {
     assert!(headline.starts_with(told) && headline.ends_with("; 2 stood still throughout"), "{headline}");
     assert!(one.html.contains("<dt>Overturned at (b1)</dt>"));
     let two = run("two-of-three", &text([0.0, 13.0, -13.0]));
-    assert!(two.summary.headline.starts_with("2 of 3 blocks overturned, first `b1`"), "{}", two.summary.headline);
+    assert!(
+        two.summary
+            .headline
+            .starts_with("2 of 3 blocks overturned (1 to the left, 1 to the right), first `b1` to the left"),
+        "{}",
+        two.summary.headline
+    );
     assert!(two.html.contains("<dt>First overturned at</dt>"));
 }
 

@@ -134,6 +134,11 @@ fn a_cube_that_stands_still_has_no_way_of_counting_impacts_and_no_penetration() 
     let tile = &tile[..tile.find("</dd>").unwrap()];
     assert!(tile.ends_with(">0\u{a0}m"), "{tile}");
     assert_eq!((run.summary.strikers(), run.summary.told_penetration()), ("", 0.0));
+    // Stones that slide on each other are a picometre deep, less than an atom, for good.
+    let wall = crate::page::run("told-wall", &scenario("dry-stone-wall"));
+    assert!((1e-13..1e-11).contains(&wall.summary.max_penetration), "{}", wall.summary.max_penetration);
+    assert!(wall.html.contains("<dt>Deepest penetration</dt>"));
+    assert_eq!(wall.summary.told_penetration(), 0.0);
 }
 
 /// At a kink of the ground a corner touches two pieces of it in the step of its impact, which no located scheme finds: neither is a force.

@@ -23,6 +23,7 @@ mod rolling;
 mod sections;
 mod sides;
 mod sizes;
+mod slides;
 mod slopes;
 mod swings;
 mod table;

@@ -71,6 +71,13 @@ fn what_goes_on_among_many_is_told_how_far() {
     assert!(one.ends_with("; `c` is still rolling, by 200 mm to the right (229°) so far"), "{one}");
     let two = headline("two-slide", &scene(-0.6, 0.0, 0.4));
     assert!(two.ends_with("; 2 are still sliding, by up to 300 mm (`b`)"), "{two}");
+    // One that hops first has gone by more than it rolled.
+    let hops = scene(-0.6, 0.3, 0.4)
+        .replace("at = '1 m'\nvelocity = ['-0.6 m/s', '0 m/s']", "at = '1 m'\nvelocity = ['-0.6 m/s', '1 m/s']");
+    let two = headline("one-of-two-hopped", &hops);
+    assert!(two.ends_with("; 2 are still rolling"), "{two}");
+    let two = headline("two-roll", &scene(-0.6, 0.3, 0.4));
+    assert!(two.ends_with("; 2 are still rolling, by up to 300 mm (`b`)"), "{two}");
     let box_on = |name: &str, velocity: f64| {
         format!(
             "[block.{name}]\ndensity = '1100 kg/m^3'\nwidth = '10 cm'\nheight = '5 cm'\ndepth = '5 cm'\non = 'ground'\nat = '{} m'\n\

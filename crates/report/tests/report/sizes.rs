@@ -312,6 +312,13 @@ fn figures_and_page_of_a_long_run_open_where_something_moves() {
     let longer = crate::page::run("slides-and-rests", &sliding.replace("end  = \"0.5 s\"", "end  = \"1 s\""));
     let shown = numbers(&data(&longer.html)["moving"]["shown"]);
     assert!(shown[0] == 0.0 && (0.4..0.5).contains(&shown[1]), "{shown:?}");
+    // What falls from the start on has hardly moved at first: that is no rest before.
+    let falls = "[time]\nend = '2 s'\nstep = '100 us'\n[ground]\n[block.b]\ndensity = '2400 kg/m^3'\nwidth = '20 cm'\nheight = '10 cm'\n\
+        depth = '10 cm'\nposition = ['0 m', '60 cm']\nangle = '3 deg'\n[contact.c]\nbetween = ['b', 'ground']\nfriction = 0.4\n";
+    let falls = crate::page::run("falls-at-once", falls);
+    let moving = &data(&falls.html)["moving"];
+    let [moves, shown] = ["moves", "shown"].map(|key| numbers(&moving[key]));
+    assert!(moves[0] == 0.0 && shown[0] == 0.0 && moves[1] < 0.8, "{moves:?} {shown:?}");
     // It is thrown over by the first of many cycles, and lies still on ground that goes on.
     let shaken = "[time]\nend = '20 s'\nstep = '1 ms'\n[ground]\nmotion = { acceleration = ['4 m/s^2', '0 m/s^2'], signal = 'shake' }\n\
         [signal.shake]\nshape = 'harmonic'\nfrequency = '1 Hz'\n[block.box]\ndensity = '800 kg/m^3'\nwidth = '10 cm'\nheight = '50 cm'\n\

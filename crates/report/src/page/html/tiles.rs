@@ -146,8 +146,9 @@ impl Largest {
             () if all.len() > 1 => " of a block",
             () => "",
         };
-        let since =
-            of.settled_at().map_or_else(String::new, |t| format!(" since it settled at t = {}", as_told(t, "s")));
+        let since = of
+            .settled_at()
+            .map_or_else(String::new, |t| format!(" since it could no longer turn over, from t = {}", as_told(t, "s")));
         let path = match () {
             () if of.column.is_some() => format!("verdict.{number}.column_phi_over_alpha"),
             () if summary.max_phi_over_alpha == Some(share) => "max_phi_over_alpha".to_owned(),

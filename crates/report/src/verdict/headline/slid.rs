@@ -15,7 +15,9 @@ pub(in crate::verdict) fn slid(scene: &Scene, of: &BodyVerdict) -> String {
         _ if both_sides.is_some() => to_both_sides(scene, of, both_sides.unwrap_or_default(), slid),
         None => format!("slid by {}", by(slid)),
         Some(farthest) if of.elsewhere.is_some() => format!("slid {}, then {}", by(farthest), by(slid - farthest)),
-        Some(farthest) if !is_told(scene, of, slid) => format!("slid {}, then back to its start", by(farthest)),
+        Some(farthest) if is_back(scene, of, slid, farthest) => {
+            format!("slid {}, then back to its start", by(farthest))
+        }
         Some(farthest) => {
             let side = direction(scene, slid).side;
             // What ends on the other side, farther from its start than it was before, isn't back there.
@@ -28,16 +30,27 @@ pub(in crate::verdict) fn slid(scene: &Scene, of: &BodyVerdict) -> String {
 
 /// How a block slid to both sides of its start (m) and where it is by that, in words.
 fn to_both_sides(scene: &Scene, of: &BodyVerdict, reached: [f64; 2], slid: f64) -> String {
+    // Where it is, as how far it was, has its hops in it.
+    let ends = of.displaced.filter(|_| !of.began_in_flight).unwrap_or(slid);
+    let far = reached.iter().fold(0.0, |far: f64, way| far.max(way.abs()));
     let in_the_end = if of.elsewhere.is_some() {
         // Hops and flights took it there.
         String::new()
-    } else if is_told(scene, of, slid) {
-        format!(", in the end {} {} it", with_unit(slid.abs(), "m"), direction(scene, slid).side)
-    } else {
+    } else if is_back(scene, of, ends, far) {
         ", in the end back at its start".to_owned()
+    } else {
+        format!(", in the end {} {} it", like(ends.abs(), far, "m"), direction(scene, ends).side)
     };
     format!("slid{TO_AND_FRO}, {}{in_the_end}", up_to(scene, of, reached))
 }
+
+/// Whether what was so `far` (m) from its start and ends at `at` (m) is back there: neither told to be elsewhere nor by a part of its way that matters.
+fn is_back(scene: &Scene, of: &BodyVerdict, at: f64, far: f64) -> bool {
+    !is_told(scene, of, at) && at.abs() < BACK * far.abs()
+}
+
+/// What is this near to its start, in parts of how far it was, is back there.
+const BACK: f64 = 0.02;
 
 /// How far to the left and to the right of its start a block has been (m), in words, as far as that is told.
 pub(in crate::verdict) fn up_to(scene: &Scene, of: &BodyVerdict, reached: [f64; 2]) -> String {
