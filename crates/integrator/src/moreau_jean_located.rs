@@ -242,6 +242,7 @@ impl<const D: usize> Scheme<D> for MoreauJeanLocated<D> {
         from.memory.reserve(contacts);
         self.from = Some(Box::new(from));
         let jumps = if model.parts().iter().any(|part| part.traits.loaded) { MOST_JUMPS } else { 0 };
+        // More of them, where bounces accumulate, are rare.
         work.reserve_phases(model, 2 * Self::MOST_ELASTIC_IMPACTS + jumps + 1);
         // A part of a step will need a factor of its own, and an impact that of the masses.
         work.factors(model, MASSES, &state.q, Keep::Pinned)?;

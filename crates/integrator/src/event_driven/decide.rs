@@ -12,10 +12,10 @@ use teeter_detect::Candidate;
 /// What [`EventDriven::touching_gap`] is in tolerances of a gap.
 const TOUCHING: f64 = 10.0;
 
-/// Blows at an instant: those of contacts that send a body to and fro die out by a tenth to a half each.
+/// Impacts at an instant at most: between contacts that send a body to and fro each is weaker than the one before by a tenth to a half.
 const MOST_BLOWS: usize = 200;
 
-/// What turns round within so many tolerances of a gap doesn't strike: the time of a touch is known to that.
+/// What turns back within so many tolerances of a gap doesn't strike: the time of a touch is known to that.
 const GRAZING: f64 = 4.0;
 
 /// A tangential acceleration below this part of what it consists of is none.
@@ -113,8 +113,8 @@ impl EventDriven {
         }
     }
 
-    /// Lets the contacts that approach strike, one blow after the other where a blow sends off what another one brings back before it has
-    /// gone further than a gap is known; whether that ends.
+    /// Lets the contacts that approach strike; then those that approach after that impact, as where a body is sent to and fro between two
+    /// contacts over less than the resolution of gaps. Whether that ends.
     fn let_strike(&mut self, model: &Model<2>, from: &mut State, work: &mut Workspace<2>) -> Result<bool, StepError> {
         let t = self.smooth.between[0];
         for blow in 0..MOST_BLOWS {
@@ -175,7 +175,7 @@ impl EventDriven {
             fastest = a.abs().max(rounding).max(fastest);
             self.in_lowest_bounce.push((candidate.id, -velocity_after(height, -a)));
             let slow = still(smooth.stage.speed(0, &from.v), smooth.stage.speed(0, &smooth.a), instant);
-            // What turns round before it is inside only grazes, as a rounding does where the side before it has slid past.
+            // What turns back before it is inside only grazes, as a rounded corner does when the flat side next to it has slid past.
             let slow = slow.max(velocity_after(grazing, a));
             approaches |= smooth.stage.velocity(0, &from.v)?[0] < -slow;
         }

@@ -48,6 +48,23 @@ impl<const D: usize> Strike<D> {
     }
 }
 
+/// Keeps the candidates for which this holds.
+fn keep_candidates<const D: usize>(
+    work: &mut Workspace<D>,
+    mut is_kept: impl FnMut(&Candidate<D>) -> Result<bool, Mismatch>,
+) -> Result<(), Mismatch> {
+    let mut kept = 0;
+    for k in 0..work.candidates.len() {
+        let candidate = work.candidates[k];
+        if is_kept(&candidate)? {
+            work.candidates[kept] = candidate;
+            kept += 1;
+        }
+    }
+    work.candidates.truncate(kept);
+    Ok(())
+}
+
 impl<const D: usize> MoreauJeanLocated<D> {
     /// Lets the contacts that touch at `from` strike, at time `end` (s): its velocities and what is
     /// closed change. Whether any do.
@@ -107,16 +124,9 @@ impl<const D: usize> MoreauJeanLocated<D> {
             // Two bodies may approach each other, each be off its place; a beam is not faster than what rocks on it.
             let reach = 4.0 * HIDDEN * from.dt * self.fastest(model, &from.v);
             work.detect(model, &from.q, touching.max(reach))?;
-            let (mut candidates, mut kept) = (std::mem::take(&mut work.candidates), 0);
-            for k in 0..candidates.len() {
-                let candidate = candidates[k];
-                if candidate.gap <= touching || self.strikes_along(model, from, &candidate)? {
-                    candidates[kept] = candidate;
-                    kept += 1;
-                }
-            }
-            candidates.truncate(kept);
-            work.candidates = candidates;
+            keep_candidates(work, |candidate| {
+                Ok(candidate.gap <= touching || self.strikes_along(model, from, candidate)?)
+            })?;
         }
         self.leave_out_what_parts(model, from, work)?;
         let Self { impact, near, .. } = self;
@@ -146,23 +156,15 @@ impl<const D: usize> MoreauJeanLocated<D> {
         from: &State,
         work: &mut Workspace<D>,
     ) -> Result<(), Mismatch> {
-        let (mut candidates, mut kept) = (std::mem::take(&mut work.candidates), 0);
-        for k in 0..candidates.len() {
-            let candidate = candidates[k];
-            let parts = self.step.closed.binary_search(&candidate.id).is_err()
-                && !self.is_with_elastic(model, &candidate.sides.map(|side| side.body))
-                && {
-                    let rate = rate_at(&mut self.one, model, &from.q, &candidate, &from.v)?;
-                    leaves(rate, || self.one.speed(0, &from.v))
-                };
-            if !parts {
-                candidates[kept] = candidate;
-                kept += 1;
+        keep_candidates(work, |candidate| {
+            if self.step.closed.binary_search(&candidate.id).is_ok()
+                || self.is_with_elastic(model, &candidate.sides.map(|side| side.body))
+            {
+                return Ok(true);
             }
-        }
-        candidates.truncate(kept);
-        work.candidates = candidates;
-        Ok(())
+            let rate = rate_at(&mut self.one, model, &from.q, candidate, &from.v)?;
+            Ok(!leaves(rate, || self.one.speed(0, &from.v)))
+        })
     }
 
     /// Finds the contacts that strike, if any closed contact has drifted from its surface, so that others may seem to come later.
